@@ -1,0 +1,25 @@
+# cmake --install: libraries, headers, the command and the package files that find_package(grainray) reads.
+# Two export sets, so that whoever asks for the neighbour search alone needs oneTBB alone.
+include(GNUInstallDirs)
+include(CMakePackageConfigHelpers)
+set(GRAINRAY_PACKAGE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/grainray)
+
+set_target_properties(grainray_neighbors grainray PROPERTIES
+  VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR} INSTALL_RPATH "$ORIGIN")
+install(TARGETS grainray_neighbors EXPORT grainrayNeighborsTargets)
+install(TARGETS grainray EXPORT grainraySimulationTargets)
+foreach(set Neighbors Simulation)
+  install(EXPORT grainray${set}Targets NAMESPACE grainray:: DESTINATION ${GRAINRAY_PACKAGE_DIR})
+endforeach()
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/grainray DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+
+if(TARGET grainray_cli)
+  set_target_properties(grainray_cli PROPERTIES INSTALL_RPATH "$ORIGIN/../${CMAKE_INSTALL_LIBDIR}")
+  install(TARGETS grainray_cli)
+endif()
+
+configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/grainrayConfig.cmake.in ${PROJECT_BINARY_DIR}/grainrayConfig.cmake
+  INSTALL_DESTINATION ${GRAINRAY_PACKAGE_DIR} NO_SET_AND_CHECK_MACRO)
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/grainrayConfigVersion.cmake COMPATIBILITY SameMinorVersion)
+install(FILES ${PROJECT_BINARY_DIR}/grainrayConfig.cmake ${PROJECT_BINARY_DIR}/grainrayConfigVersion.cmake
+  DESTINATION ${GRAINRAY_PACKAGE_DIR})

@@ -1,0 +1,103 @@
+// A simulation: particles, neighbours, contacts, motion. Nothing here reads or writes files.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "grainray/device.hpp"
+#include "grainray/output.hpp"
+#include "grainray/scene.hpp"
+
+namespace grainray {
+
+/// Wall-clock seconds each stage of step() took so far. The names are those of the progress line and summary.json.
+struct Profile {
+    double neighbors = 0;  ///< sort, search, lists, history carry-over
+    double contacts = 0;   ///< forces between particles
+    double boundary = 0;   ///< forces from planes
+    double dynamics = 0;   ///< integration, damping, margin check
+    double output = 0;     ///< statistics, frames, checkpoints
+};
+
+/// What the neighbour search did so far.
+struct SearchReport {
+    std::string backend, reason;
+    std::uint64_t rebuilds = 0;
+    double mean_interval_steps = 0;
+    double mean_neighbors = 0;  ///< neighbours of a particle in the list, both sides counted
+    double mean_margin_ratio = 0;  ///< mean margin / radius at the last rebuild
+};
+
+/// Whole-system figures at one instant.
+struct Statistics {
+    std::uint64_t step = 0;
+    double time = 0;
+    double kinetic_translation = 0, kinetic_rotation = 0;  ///< J
+    double potential = 0;                                  ///< -sum m g . (x - world origin), J
+    Vec3d momentum;                                        ///< kg m/s
+    Vec3d angular_momentum;                                ///< about the world origin, spin included, kg m2/s
+    double max_overlap_ratio = 0;                          ///< overlap / smaller radius, contacts with planes included
+    double coordination = 0;                               ///< mean touching particles and planes a particle
+    double max_speed = 0;                                  ///< m/s
+    Vec3d lower, upper;                                    ///< bounds of the sphere surfaces, m
+    double front_99 = 0;                                   ///< 99th percentile of the centres' x, m
+    double mean_neighbors = 0;
+    std::uint64_t contacts = 0;                            ///< touching pairs, planes included
+};
+
+struct SimulationOptions {
+    Device device = Device::cpu;
+    std::string backend = "auto";
+    int threads = 0;  ///< 0: all
+};
+
+class Simulation {
+public:
+    /// Throws InputError where the scene cannot be simulated (no particles are allowed: such a run does nothing).
+    Simulation(const Scene&, const InitialState&, const SimulationOptions& = {});
+    /// Goes on exactly where the checkpoint was taken.
+    Simulation(const Scene&, const Checkpoint&, const SimulationOptions& = {});
+    ~Simulation();
+    Simulation(Simulation&&) noexcept;
+
+    /// One time step: the table of contents of the program (src/simulation.cpp).
+    void step();
+    void run(std::uint64_t steps);
+
+    std::size_t size() const;
+    std::uint64_t step_count() const;
+    double time() const;
+    double dt() const;
+    Device device() const;
+
+    Statistics statistics() const;
+    Frame frame() const;
+    Checkpoint checkpoint() const;
+    /// 64-bit hash of positions, velocities, spins and contact histories by id; equal on every device and back end.
+    std::uint64_t state_hash() const;
+
+    /// Throws SimulationError where a value is not finite or a limit of the scene is passed; names the particle, its
+    /// neighbours, overlap, speed and dt against the critical dt.
+    void check_health() const;
+
+    const Profile& profile() const;
+    Profile& profile();
+    SearchReport search() const;
+    std::size_t memory_bytes() const;
+
+private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+/// Result of `grainray check`.
+struct CriticalStep {
+    std::string contact;      ///< "grain-grain normal", "grain-floor tangential", ...
+    double critical_dt = 0;   ///< s, of the explicit scheme with its lagged damping
+    std::string field;        ///< scene key to change
+};
+/// The critical time step of every kind of contact in the scene, smallest first; see src/methods/stability.cpp.
+std::vector<CriticalStep> critical_steps(const Scene&, const InitialState&);
+
+}  // namespace grainray

@@ -1,0 +1,19 @@
+// Stage: forces between particles. A law adds one line to the switch.
+#include "stages.hpp"
+
+#include "contacts/linear.hpp"
+#include "exec/pairs.hpp"
+
+namespace grainray::GRAINRAY_EXEC {
+
+void contacts(State& s, ContactLaw law, const StepConstants& constants) {
+    const PairLoop loop{s.particles.near.view(), s.particles.far.view(), s.particles.body.view(), s.grains.offsets.view(),
+                        s.grains.partners.view(), s.grains.history.view(), s.grain_parameters.view(), s.materials, s.block,
+                        static_cast<float>(s.particles.scale.unit), 1.0 / s.quanta.force, 1.0 / s.quanta.torque, s.period,
+                        s.wrench.view()};
+    switch (law) {
+        case ContactLaw::linear: return for_each_touching_pair(loop, LinearLaw{constants.dt});
+    }
+}
+
+}  // namespace grainray::GRAINRAY_EXEC

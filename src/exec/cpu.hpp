@@ -1,0 +1,102 @@
+// Primitives on the CPU, over oneTBB. Every result is independent of the number of threads.
+#pragma once
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_reduce.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <vector>
+
+#include "grainray/device.hpp"
+
+namespace grainray::cpu {
+
+inline constexpr Device device = Device::cpu;
+
+/// f(i) for every i in [0, n), in any order.
+template <class F>
+void for_each(std::size_t n, const F& f, std::size_t grain = 2048) {
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, n, grain), [&](const auto& range) {
+        for (std::size_t i = range.begin(); i != range.end(); ++i) f(i);
+    });
+}
+
+/// op over f(0) ... f(n-1); the tree of additions depends on n alone.
+template <class T, class F, class Op>
+T reduce(std::size_t n, T identity, const F& f, const Op& op) {
+    return tbb::parallel_deterministic_reduce(
+        tbb::blocked_range<std::size_t>(0, n, 4096), identity,
+        [&](const auto& range, T sum) {
+            for (std::size_t i = range.begin(); i != range.end(); ++i) sum = op(sum, f(i));
+            return sum;
+        },
+        op);
+}
+
+/// Replaces each value by the sum of those before it; returns the sum of all.
+template <class T>
+T exclusive_scan(View<T> values) {
+    constexpr std::size_t chunk = 1 << 15;
+    const std::size_t chunks = (values.size + chunk - 1) / chunk;
+    std::vector<T> start(chunks + 1, T{});
+    const auto end_of = [&](std::size_t c) { return std::min(values.size, (c + 1) * chunk); };
+    for_each(chunks, [&](std::size_t c) {
+        for (std::size_t i = c * chunk; i < end_of(c); ++i) start[c + 1] += values[i];
+    }, 1);
+    for (std::size_t c = 0; c < chunks; ++c) start[c + 1] += start[c];
+    for_each(chunks, [&](std::size_t c) {
+        T sum = start[c];
+        for (std::size_t i = c * chunk; i < end_of(c); ++i) sum += std::exchange(values[i], sum);
+    }, 1);
+    return start[chunks];
+}
+
+/// Stable radix sort of (keys, values) by the lowest `bits` bits of the keys; `keys2`, `values2` are scratch.
+template <class Key>
+void sort_by_key(Array<Key>& keys, Array<std::uint32_t>& values, Array<Key>& keys2, Array<std::uint32_t>& values2, int bits) {
+    constexpr int digit_bits = 11;
+    constexpr std::size_t digits = std::size_t{1} << digit_bits, chunk = 1 << 16;
+    const std::size_t n = keys.size(), chunks = (n + chunk - 1) / chunk;
+    keys2.resize_discard(n);
+    values2.resize_discard(n);
+    std::vector<std::array<std::uint32_t, digits>> count(chunks);
+    for (int shift = 0; shift < bits; shift += digit_bits) {
+        const Key* in = keys.data();
+        const auto digit = [=](std::size_t i) { return static_cast<std::size_t>(in[i] >> shift) & (digits - 1); };
+        for_each(chunks, [&](std::size_t c) {
+            count[c].fill(0);
+            for (std::size_t i = c * chunk; i < std::min(n, (c + 1) * chunk); ++i) ++count[c][digit(i)];
+        }, 1);
+        std::uint32_t sum = 0;
+        for (std::size_t d = 0; d < digits; ++d)
+            for (std::size_t c = 0; c < chunks; ++c) sum += std::exchange(count[c][d], sum);
+        for_each(chunks, [&](std::size_t c) {
+            for (std::size_t i = c * chunk; i < std::min(n, (c + 1) * chunk); ++i) {
+                const std::uint32_t to = count[c][digit(i)]++;
+                keys2.data()[to] = keys.data()[i];
+                values2.data()[to] = values.data()[i];
+            }
+        }, 1);
+        keys.swap(keys2);
+        values.swap(values2);
+    }
+}
+
+/// Adds and returns what was there before.
+template <class T>
+T atomic_add(T* address, T value) {
+    return std::atomic_ref<T>(*address).fetch_add(value, std::memory_order_relaxed);
+}
+template <class T>
+void atomic_min(T* address, T value) {
+    std::atomic_ref<T> ref(*address);
+    T old = ref.load(std::memory_order_relaxed);
+    while (value < old && !ref.compare_exchange_weak(old, value, std::memory_order_relaxed)) {}
+}
+
+inline void synchronize() {}
+
+}  // namespace grainray::cpu

@@ -1,0 +1,19 @@
+// The memory functions of CUDA, behind pointers, so that nothing else needs to know whether CUDA was built in.
+#pragma once
+
+#include <cstddef>
+#include <string>
+
+namespace grainray::memory {
+
+struct Cuda {
+    bool (*available)();
+    std::string (*status)();
+    void* (*allocate)(std::size_t);
+    void (*deallocate)(void*) noexcept;
+    void (*copy)(void*, const void*, std::size_t);
+    void (*clear)(void*, std::size_t);
+};
+const Cuda& cuda();
+
+}  // namespace grainray::memory

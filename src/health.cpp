@@ -1,0 +1,157 @@
+// The exact state of a run: checkpoint, hash, and whether it still makes sense.
+#include <algorithm>
+#include <bit>
+#include <cstdio>
+#include <numeric>
+
+#include "observe.hpp"
+
+namespace grainray {
+namespace {
+
+/// Finaliser of MurmurHash3 (Appleby), chained.
+std::uint64_t mix(std::uint64_t h, std::uint64_t value) {
+    h ^= value + 0x9e3779b97f4a7c15ull;
+    h = (h ^ h >> 33) * 0xff51afd7ed558ccdull;
+    h = (h ^ h >> 33) * 0xc4ceb9fe1a85ec53ull;
+    return h ^ h >> 33;
+}
+std::uint64_t mix(std::uint64_t h, const Vec3f& v) {
+    for (int a = 0; a < 3; ++a) h = mix(h, std::bit_cast<std::uint32_t>(v[a] + 0.0f));  // -0 and 0 are one value
+    return h;
+}
+std::uint64_t mix(std::uint64_t h, const Vec3l& v) {
+    for (int a = 0; a < 3; ++a) h = mix(h, static_cast<std::uint64_t>(v[a]));
+    return h;
+}
+
+template <class... Arguments>
+std::string format(const char* text, Arguments... arguments) {
+    char buffer[512];
+    std::snprintf(buffer, sizeof buffer, text, arguments...);
+    return buffer;
+}
+
+}  // namespace
+
+Checkpoint Simulation::checkpoint() const {
+    const Snapshot snap(impl_->state);
+    const std::size_t n = snap.size();
+    Checkpoint c;
+    c.step = impl_->step_number;
+    c.time = impl_->time();
+    c.dt = impl_->scene.dt;
+    c.unit = snap.scale.unit;
+    c.origin = snap.scale.origin;
+    c.scene = impl_->scene.source;
+    c.state_hash = state_hash();
+    std::vector<std::uint32_t> order(n);
+    std::iota(order.begin(), order.end(), 0u);
+    std::sort(order.begin(), order.end(), [&](auto a, auto b) { return snap.id[a] < snap.id[b]; });
+    for (const std::uint32_t i : order) {
+        c.id.push_back(snap.id[i]);
+        c.material.push_back(snap.body[i].material);
+        c.position.push_back(snap.position(i));
+        c.radius.push_back(static_cast<float>(snap.radius(i)));
+        c.mass.push_back(snap.body[i].mass);
+        c.radius_units.push_back(snap.near[i].radius);
+        c.velocity.push_back(snap.body[i].velocity);
+        c.angular_velocity.push_back(snap.body[i].spin);
+    }
+    struct Entry {
+        std::uint32_t a, b;
+        Vec3f h;
+    };
+    std::vector<Entry> pairs, walls;
+    snap.for_each_contact([&](const TouchingContact& t) {
+        if (t.history == Vec3f{}) return;
+        const std::uint32_t a = snap.id[t.i];
+        if (t.wall) walls.push_back({a, t.j, t.history});
+        else if (const std::uint32_t b = snap.id[t.j]; a > b) pairs.push_back({a, b, t.history});
+        else pairs.push_back({b, a, -t.history});
+    });
+    const auto before = [](const Entry& x, const Entry& y) { return x.a != y.a ? x.a < y.a : x.b < y.b; };
+    std::sort(pairs.begin(), pairs.end(), before);
+    std::sort(walls.begin(), walls.end(), before);
+    for (const Entry& e : pairs) {
+        c.contact_a.push_back(e.a);
+        c.contact_b.push_back(e.b);
+        c.contact_history.push_back(e.h);
+    }
+    for (const Entry& e : walls) {
+        c.wall_particle.push_back(e.a);
+        c.wall_plane.push_back(e.b);
+        c.wall_history.push_back(e.h);
+    }
+    return c;
+}
+
+/// A sum over particles and contacts of hashes keyed by id: the order of storage does not matter.
+std::uint64_t Simulation::state_hash() const {
+    const Snapshot snap(impl_->state);
+    std::uint64_t sum = mix(0, impl_->step_number);
+    for (std::size_t i = 0; i < snap.size(); ++i) {
+        std::uint64_t h = mix(mix(1, snap.id[i]), snap.position(i));
+        h = mix(mix(h, snap.body[i].velocity), snap.body[i].spin);
+        sum += mix(h, static_cast<std::uint64_t>(snap.near[i].radius));
+    }
+    snap.for_each_contact([&](const TouchingContact& t) {
+        if (t.history == Vec3f{}) return;
+        const std::uint32_t a = snap.id[t.i];
+        if (t.wall) sum += mix(mix(mix(3, a), t.j), t.history);
+        else if (const std::uint32_t b = snap.id[t.j]; a > b) sum += mix(mix(mix(2, a), b), t.history);
+        else sum += mix(mix(mix(2, b), a), -t.history);
+    });
+    return sum;
+}
+
+void Simulation::check_health() const {
+    const Impl& s = *impl_;
+    const Snapshot snap(s.state);
+    const std::size_t n = snap.size();
+    if (n == 0) return;
+    double smallest = snap.radius(0);
+    for (std::size_t i = 1; i < n; ++i) smallest = std::min(smallest, snap.radius(i));
+    const double speed_limit = s.scene.limits.speed > 0 ? s.scene.limits.speed : smallest / s.scene.dt;
+
+    std::size_t worst = n;
+    std::string what;
+    const auto flags = s.state.flags.to_host();
+    if (s.rebuilds && flags[1] < n) {
+        worst = flags[1];
+        what = "the step of";
+    }
+    for (std::size_t i = 0; i < n && worst == n; ++i) {
+        const double speed = length(convert<double>(snap.body[i].velocity)), spin = length(convert<double>(snap.body[i].spin));
+        if (std::isfinite(speed) && std::isfinite(spin) && speed <= speed_limit) continue;
+        worst = i;
+        what = speed > speed_limit ? format("speed %.6g m/s, past the limit of %.6g m/s (limits.speed), of", speed, speed_limit)
+                                   : std::string("a velocity or spin that is not finite, of");
+    }
+    std::string neighbors;
+    int named = 0;
+    snap.for_each_contact([&](const TouchingContact& c) {
+        const double ratio = c.overlap / (c.wall ? snap.radius(c.i) : std::min(snap.radius(c.i), snap.radius(c.j)));
+        if (worst == n && ratio > s.scene.limits.overlap) {
+            worst = c.i;
+            what = format("overlap of %.4g of the smaller radius, past the limit of %.4g (limits.overlap), of", ratio, s.scene.limits.overlap);
+        }
+    });
+    if (worst == n) return;
+    snap.for_each_contact([&](const TouchingContact& c) {
+        if (named == 4 || (c.i != worst && (c.wall || c.j != worst))) return;
+        const std::string other = c.wall ? "plane '" + s.scene.planes[c.j].name + "'" : "particle " + std::to_string(snap.id[c.i == worst ? c.j : c.i]);
+        neighbors += (named++ ? ", " : "") + other + format(" (overlap %.4g m)", c.overlap);
+    });
+    const Vec3d x = snap.scale.world(snap.position(worst));
+    const Body& b = snap.body[worst];
+    throw SimulationError(
+        format("unstable at t = %.6g s (step %llu): ", s.time(), static_cast<unsigned long long>(s.step_number)) + what +
+        format(" particle %u at (%.6g, %.6g, %.6g) m, radius %.4g m, velocity (%.4g, %.4g, %.4g) m/s", snap.id[worst], x.x, x.y, x.z,
+               snap.radius(worst), b.velocity.x, b.velocity.y, b.velocity.z) +
+        "; touching: " + (neighbors.empty() ? "nothing" : neighbors) +
+        format("; dt = %.3g s, critical dt = %.3g s. ", s.scene.dt, s.critical_dt) +
+        (s.critical_dt > 0 && s.scene.dt > s.critical_dt ? "Lower simulation.dt" : "Look for particles placed inside each other, or lower simulation.dt or the stiffness"));
+}
+
+}  // namespace grainray

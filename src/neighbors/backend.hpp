@@ -1,0 +1,52 @@
+// What a search back end is: it takes packed points and fills lists. One registry row and one CMake line add another.
+#pragma once
+
+#include <memory>
+
+#include "grainray/neighbors.hpp"
+#include "neighbors/pair_test.hpp"
+
+namespace grainray::neighbors {
+
+/// Points packed, checked and wrapped into the periodic box: the same numbers for every back end.
+struct Packed {
+    explicit Packed(Device device) : spheres(device), ids(device) {}
+    Array<Sphere> spheres;
+    Array<std::uint32_t> ids;
+    float mean_reach = 0, max_reach = 0;
+    Vec3f lower{}, upper{};  ///< bounds of the centres
+    std::size_t size() const { return spheres.size(); }
+};
+
+struct Request {
+    ListKind kind;
+    std::uint32_t block;
+    bool ascending;
+    Vec3f lower, period;
+    bool periodic() const { return period.x > 0 || period.y > 0 || period.z > 0; }
+};
+
+class Backend {
+public:
+    virtual ~Backend() = default;
+    virtual void pairs(const Packed& points, const Request&, NeighborList&) = 0;
+    virtual void queries(const Packed& queries, const Packed& points, const Request&, NeighborList&) = 0;
+    virtual std::size_t memory_bytes() const = 0;
+};
+
+/// Packs caller's points; throws InputError naming the first bad one. `what` is "point" or "query".
+using PackFunction = void (*)(const Points&, const Request&, const char* what, Packed&);
+
+}  // namespace grainray::neighbors
+
+namespace grainray::cpu {
+void pack_points(const Points&, const neighbors::Request&, const char* what, neighbors::Packed&);
+std::unique_ptr<neighbors::Backend> make_brute();
+std::unique_ptr<neighbors::Backend> make_cells();
+}  // namespace grainray::cpu
+
+namespace grainray::cuda {
+void pack_points(const Points&, const neighbors::Request&, const char* what, neighbors::Packed&);
+std::unique_ptr<neighbors::Backend> make_brute();
+std::unique_ptr<neighbors::Backend> make_cells();
+}  // namespace grainray::cuda

@@ -1,0 +1,87 @@
+// From "the owner i has found j" to rows: count, scan, fill, sort. Written once for every back end; no row has a cap.
+//
+// A Finder is copied to the device and gives
+//   index(k)        the point that work item k stands for (a locality-friendly order of the points)
+//   find(k, emit)   calls emit(j) for every pair that index(k) owns
+#pragma once
+
+#include "exec/exec.hpp"
+#include "neighbors/backend.hpp"
+
+namespace grainray::GRAINRAY_EXEC {
+
+namespace rows {
+
+/// In place, ascending. Rows are short, so insertion; a boulder's long row takes heap sort.
+GR_HD inline void sort(std::uint32_t* a, std::size_t n) {
+    if (n <= 48) {
+        for (std::size_t i = 1; i < n; ++i) {
+            const std::uint32_t v = a[i];
+            std::size_t j = i;
+            for (; j > 0 && a[j - 1] > v; --j) a[j] = a[j - 1];
+            a[j] = v;
+        }
+        return;
+    }
+    const auto sift = [a](std::size_t root, std::size_t end) {
+        for (std::size_t child; (child = 2 * root + 1) < end; root = child) {
+            if (child + 1 < end && a[child] < a[child + 1]) ++child;
+            if (a[root] >= a[child]) return;
+            const std::uint32_t t = a[root];
+            a[root] = a[child];
+            a[child] = t;
+        }
+    };
+    for (std::size_t i = n / 2; i-- > 0;) sift(i, n);
+    for (std::size_t end = n; end-- > 1;) {
+        const std::uint32_t t = a[0];
+        a[0] = a[end];
+        a[end] = t;
+        sift(0, end);
+    }
+}
+
+}  // namespace rows
+
+/// Fills `list` with the rows of `items` work items over `n` points, as Request::kind says.
+template <class Finder>
+void build_list(const Finder& finder, std::size_t items, std::size_t n, const neighbors::Request& request, NeighborList& list) {
+    static_assert(std::is_trivially_copyable_v<Finder>);
+    // Blocks generalise the kinds: in one endless block each pair stands once, in blocks of one it stands twice.
+    const std::uint32_t block = request.kind == ListKind::half ? 0xffffffffu : request.kind == ListKind::full ? 1u : request.block;
+    Array<std::uint32_t> own_counts(device, n);  // found by the row's own point; mirrored entries stand after them
+    list.offsets.resize_discard(n + 1);
+    list.offsets.clear_bytes();
+    own_counts.clear_bytes();
+
+    const auto offsets = list.offsets.view();
+    const auto own = own_counts.view();
+    for_each(items, [=] GR_HD(std::size_t k) {
+        const std::uint32_t i = finder.index(k);
+        std::uint32_t found = 0;
+        finder.find(k, [&](std::uint32_t j) {
+            ++found;
+            if (i / block != j / block) atomic_add(&offsets[j], std::uint64_t{1});
+        });
+        own[i] = found;
+        if (found) atomic_add(&offsets[i], std::uint64_t{found});
+    }, 256);
+    list.neighbors.resize_discard_slack(exclusive_scan(offsets));
+
+    Array<std::uint64_t> mirrors(device, n);  // where the next mirrored entry of a row goes
+    const auto mirror = mirrors.view();
+    const auto entries = list.neighbors.view();
+    for_each(n, [=] GR_HD(std::size_t i) { mirror[i] = offsets[i] + own[i]; });
+    for_each(items, [=] GR_HD(std::size_t k) {
+        const std::uint32_t i = finder.index(k);
+        std::uint64_t slot = offsets[i];
+        finder.find(k, [&](std::uint32_t j) {
+            entries[slot++] = j;
+            if (i / block != j / block) entries[atomic_add(&mirror[j], std::uint64_t{1})] = i;
+        });
+    }, 256);
+    if (request.ascending)
+        for_each(n, [=] GR_HD(std::size_t i) { rows::sort(&entries[offsets[i]], offsets[i + 1] - offsets[i]); });
+}
+
+}  // namespace grainray::GRAINRAY_EXEC

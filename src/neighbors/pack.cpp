@@ -1,0 +1,84 @@
+// Stage: the caller's points become one array of spheres, checked and wrapped into the periodic box.
+#include "exec/exec.hpp"
+#include "neighbors/backend.hpp"
+
+namespace grainray::GRAINRAY_EXEC {
+namespace {
+
+struct Extent {
+    float lo[3], hi[3], max_reach;
+    double sum_reach;
+};
+
+struct Join {
+    GR_HD Extent operator()(Extent a, const Extent& b) const {
+        for (int k = 0; k < 3; ++k) {
+            a.lo[k] = a.lo[k] < b.lo[k] ? a.lo[k] : b.lo[k];
+            a.hi[k] = a.hi[k] > b.hi[k] ? a.hi[k] : b.hi[k];
+        }
+        a.max_reach = a.max_reach > b.max_reach ? a.max_reach : b.max_reach;
+        a.sum_reach += b.sum_reach;
+        return a;
+    }
+};
+
+GR_HD inline float wrap(float x, float lower, float period) {
+    if (!(period > 0)) return x;
+    const float w = x - period * floorf((x - lower) / period);
+    return w < lower + period ? (w < lower ? lower : w) : lower;
+}
+
+GR_HD inline bool finite(float v) { return v - v == 0; }
+
+[[noreturn]] void refuse(const Points& points, std::uint32_t bad, const char* what) {
+    const auto at = [&](const float* array, std::size_t stride) {
+        float v = 0;
+        detail::copy(Device::cpu, &v, device, array + bad * stride, sizeof v);
+        return v;
+    };
+    const float reach = points.reach ? at(points.reach, points.reach_stride) : points.uniform_reach;
+    throw InputError(std::string(what) + " " + std::to_string(bad) + " at (" + std::to_string(at(points.x, points.stride)) + ", " +
+                     std::to_string(at(points.y, points.stride)) + ", " + std::to_string(at(points.z, points.stride)) +
+                     ") with reach " + std::to_string(reach) + ": coordinates must be finite and the reach finite and not negative");
+}
+
+}  // namespace
+
+void pack_points(const Points& points, const neighbors::Request& request, const char* what, neighbors::Packed& packed) {
+    const std::size_t n = points.size;
+    if (n >= 0xffffffffu) throw InputError(std::to_string(n) + " points: at most 4294967294 can be searched");
+    packed.spheres.resize_discard(n);
+    packed.ids.resize_discard(n);
+    packed.lower = packed.upper = {};
+    packed.mean_reach = packed.max_reach = 0;
+    if (n == 0) return;
+
+    Array<std::uint32_t> first_bad(device, std::vector<std::uint32_t>{0xffffffffu});
+    const auto bad = first_bad.view();
+    const auto spheres = packed.spheres.view();
+    const auto ids = packed.ids.view();
+    const Points p = points;
+    const Vec3f lower = request.lower, period = request.period;
+    for_each(n, [=] GR_HD(std::size_t i) {
+        const neighbors::Sphere s{p.x[i * p.stride], p.y[i * p.stride], p.z[i * p.stride],
+                                  p.reach ? p.reach[i * p.reach_stride] : p.uniform_reach};
+        if (!finite(s.x) || !finite(s.y) || !finite(s.z) || !finite(s.reach) || s.reach < 0)
+            atomic_min(&bad[0], static_cast<std::uint32_t>(i));
+        spheres[i] = {wrap(s.x, lower.x, period.x), wrap(s.y, lower.y, period.y), wrap(s.z, lower.z, period.z), s.reach};
+        ids[i] = p.ids ? p.ids[i] : static_cast<std::uint32_t>(i);
+    });
+    if (const std::uint32_t b = first_bad.to_host()[0]; b != 0xffffffffu) refuse(points, b, what);
+
+    constexpr float huge = 3.4e38f;
+    const Extent none{{huge, huge, huge}, {-huge, -huge, -huge}, 0, 0};
+    const Extent all = reduce(n, none, [=] GR_HD(std::size_t i) {
+        const neighbors::Sphere s = spheres[i];
+        return Extent{{s.x, s.y, s.z}, {s.x, s.y, s.z}, s.reach, s.reach};
+    }, Join{});
+    packed.lower = {all.lo[0], all.lo[1], all.lo[2]};
+    packed.upper = {all.hi[0], all.hi[1], all.hi[2]};
+    packed.max_reach = all.max_reach;
+    packed.mean_reach = static_cast<float>(all.sum_reach / static_cast<double>(n));
+}
+
+}  // namespace grainray::GRAINRAY_EXEC

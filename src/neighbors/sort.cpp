@@ -1,0 +1,97 @@
+// Stage: storage order. Neighbours in space become neighbours in memory.
+#include "exec/exec.hpp"
+#include "neighbors/morton.hpp"
+#include "stages.hpp"
+
+namespace grainray::GRAINRAY_EXEC {
+namespace {
+
+struct Bounds {
+    Vec3l lo, hi;
+};
+struct JoinBounds {
+    GR_HD Bounds operator()(Bounds a, const Bounds& b) const {
+        for (int k = 0; k < 3; ++k) {
+            a.lo[k] = a.lo[k] < b.lo[k] ? a.lo[k] : b.lo[k];
+            a.hi[k] = a.hi[k] > b.hi[k] ? a.hi[k] : b.hi[k];
+        }
+        return a;
+    }
+};
+
+/// 2 to 4 largest radii, in fine units: fine enough for locality, few digits to sort.
+constexpr int cell_shift = fine_bits + 28;
+
+Bounds bounds_in_cells(View<const Near> near, View<const Far> far) {
+    constexpr std::int64_t big = std::int64_t{1} << 62;
+    return reduce(near.size, Bounds{{big, big, big}, {-big, -big, -big}}, [=] GR_HD(std::size_t i) {
+        const Vec3l p = join(near[i], far[i]);
+        const Vec3l c{p.x >> cell_shift, p.y >> cell_shift, p.z >> cell_shift};
+        return Bounds{c, c};
+    }, JoinBounds{});
+}
+
+void wrap_periodic(State& s) {
+    const Vec3l lower = s.period_lower;
+    const Vec3l period{s.period.x << fine_bits, s.period.y << fine_bits, s.period.z << fine_bits};
+    if (period == Vec3l{}) return;
+    const auto near = s.particles.near.view();
+    const auto far = s.particles.far.view();
+    for_each(s.size(), [=] GR_HD(std::size_t i) {
+        Vec3l p = join(near[i], far[i]);
+        for (int a = 0; a < 3; ++a) {
+            if (period[a] <= 0) continue;
+            std::int64_t r = (p[a] - lower[a]) % period[a];
+            if (r < 0) r += period[a];
+            p[a] = lower[a] + r;
+        }
+        near[i] = {near_of(p.x), near_of(p.y), near_of(p.z), near[i].radius};
+        far[i] = far_of(p);
+    });
+}
+
+template <class T>
+void permute(Array<T>& values, const Array<std::uint32_t>& old_index) {
+    Array<T> sorted(device, values.size());
+    const auto from = values.view(), to = sorted.view();
+    const auto was = old_index.view();
+    for_each(values.size(), [=] GR_HD(std::size_t i) { to[i] = from[was[i]]; });
+    values.swap(sorted);
+}
+
+}  // namespace
+
+void sort(State& s, Array<std::uint32_t>& old_index) {
+    wrap_periodic(s);
+    Particles& p = s.particles;
+    const std::size_t n = p.size();
+    const auto near = p.near.view();
+    const auto far = p.far.view();
+    const Bounds bounds = bounds_in_cells(near, far);
+    int bits = 1;
+    const double cell = std::ldexp(p.scale.fine(), cell_shift);
+    for (int a = 0; a < 3; ++a) {
+        s.lower[a] = static_cast<float>((bounds.lo[a] - 1) * cell);
+        s.upper[a] = static_cast<float>((bounds.hi[a] + 2) * cell);
+        while (bits < 21 && n && (bounds.hi[a] - bounds.lo[a]) >> bits) ++bits;
+    }
+
+    Array<std::uint64_t> keys(device, n), keys2(device);
+    Array<std::uint32_t> order2(device);
+    old_index.resize_discard(n);
+    const auto key = keys.view();
+    const auto order = old_index.view();
+    const Vec3l lo = bounds.lo;
+    for_each(n, [=] GR_HD(std::size_t i) {
+        const Vec3l q = join(near[i], far[i]);
+        key[i] = neighbors::morton((q.x >> cell_shift) - lo.x, (q.y >> cell_shift) - lo.y, (q.z >> cell_shift) - lo.z);
+        order[i] = static_cast<std::uint32_t>(i);
+    });
+    sort_by_key(keys, old_index, keys2, order2, 3 * bits);
+    permute(p.near, old_index);
+    permute(p.far, old_index);
+    permute(p.body, old_index);
+    permute(p.id, old_index);
+}
+
+}  // namespace grainray::GRAINRAY_EXEC

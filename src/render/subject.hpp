@@ -1,0 +1,31 @@
+// What the picture is of: the frame's particles as spheres near a local zero, so that floats are fine for the rest.
+#pragma once
+
+#include <vector>
+
+#include "grainray/output.hpp"
+#include "grainray/scene.hpp"
+
+namespace grainray::picture {
+
+struct Sphere {  // four floats in a row: the layout Embree reads
+    Vec3f centre;
+    float radius = 0;
+};
+
+/// Everything here but `origin` is relative to `origin`.
+struct Subject {
+    Vec3d origin;                      ///< world position of the local zero
+    Box bounds;                        ///< of all particles but a few runaways
+    std::vector<Sphere> spheres;
+    std::vector<std::uint32_t> index;  ///< frame index of each sphere: particles that are not finite are left out
+    double diagonal() const { return length(bounds.extent()); }
+};
+
+/// Throws InputError: no radii, fields of different lengths.
+Subject make_subject(const Frame&, const Scene&);
+
+/// The value below which a share q of the values lies; reorders them. They must not be empty.
+double percentile(std::vector<double>& values, double q);
+
+}  // namespace grainray::picture

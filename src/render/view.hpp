@@ -1,0 +1,37 @@
+// The camera: where it stands, the ray through a place of the image, the place of a point.
+#pragma once
+
+#include <optional>
+
+#include "render/panels.hpp"
+#include "render/subject.hpp"
+
+namespace grainray::picture {
+
+struct Ray {
+    Vec3f origin, direction;
+};
+
+/// Where a point stands in the image: pixels from the left and from the top, metres from the eye.
+struct Spot {
+    double x = 0, y = 0, depth = 0;
+};
+
+struct View {
+    Vec3d eye, right, up, forward;  ///< relative to the subject's origin; unit vectors
+    double tan_x = 1, tan_y = 1;    ///< half the width and height of the image at distance one
+    int width = 0, height = 0;
+
+    Ray ray(double x, double y) const;
+    Spot spot(const Vec3d&) const;
+};
+
+/// Shares of the image to keep free of particles, for the legend and the caption.
+struct Margins {
+    double left = 0.04, right = 0.04, top = 0.05, bottom = 0.05;
+};
+
+/// The camera of the settings, completed so that everything is in the picture. Throws InputError (eye = target, ...).
+View make_view(const RenderSettings&, const Subject&, const Room&, const Margins&);
+
+}  // namespace grainray::picture

@@ -1,0 +1,69 @@
+// THE field table: every key a scene may have, with its unit, default, range and meaning (schema.cpp).
+#pragma once
+
+#include "grainray/scene.hpp"
+#include "scene/field.hpp"
+
+namespace grainray::scene {
+
+// Rows for tables of the file that are laid out differently from the struct they end in.
+struct DomainRow {
+    std::optional<Vec3d> lower, upper;
+    std::array<bool, 3> periodic{};
+};
+enum class Placement { lattice, list, file, fill };
+struct PlacementRow {
+    Placement type = Placement::lattice;
+};
+struct FileRow {
+    std::string path;
+};
+struct FillRow {
+    Vec3d lower, upper;
+    std::optional<std::int64_t> count;
+    std::optional<double> solid_fraction;
+};
+/// Cut-offs are optional: three deviations where they are not given.
+struct SizeRow {
+    SizeLaw law = SizeLaw::fixed;
+    double radius = 0, mean = 0, deviation = 0;
+    std::optional<double> minimum, maximum;
+    std::vector<double> radii, weights;
+};
+
+struct Schema {
+    Section<Scene> top, simulation;
+    Section<DomainRow> domain;
+    Section<ContactSettings> contact;
+    Section<SearchSettings> search;
+    Section<OutputSettings> output;
+    Section<Limits> limits;
+    Section<RenderSettings> render;
+    Section<Camera> camera;
+    Section<Material> material;
+    Section<PairRow> pair;
+    Section<PlacementRow> placement;
+    Section<ParticleGroup> group;
+    Section<Lattice> lattice;
+    Section<ParticleList> list;
+    Section<FileRow> file;
+    Section<FillRow> fill;
+    Section<SizeRow> size;                      ///< the law alone
+    std::array<Section<SizeRow>, 5> size_laws;  ///< the fields of each law, in the order of SizeLaw
+    Section<Plane> plane;
+    Section<Motion> motion, rotation, oscillation;
+
+    /// Calls visit(section) in the order of the docs.
+    template <class Visit>
+    void each(Visit&& visit) const {
+        visit(top), visit(simulation), visit(domain), visit(contact), visit(search), visit(output), visit(limits);
+        visit(render), visit(camera), visit(material), visit(pair), visit(placement), visit(group), visit(lattice);
+        visit(list), visit(file), visit(fill), visit(size);
+        for (const auto& law : size_laws) visit(law);
+        visit(plane), visit(motion), visit(rotation), visit(oscillation);
+    }
+};
+
+const Schema& schema();
+
+}  // namespace grainray::scene

@@ -1,0 +1,107 @@
+// A time step. Impl::step() is the table of contents of the whole program.
+#include "simulation_impl.hpp"
+
+#include <chrono>
+
+namespace grainray {
+namespace {
+
+/// Adds the time until its end of scope to one entry of the profile.
+class Timed {
+public:
+    explicit Timed(double& seconds) : seconds_(seconds), start_(clock::now()) {}
+    ~Timed() { seconds_ += std::chrono::duration<double>(clock::now() - start_).count(); }
+
+private:
+    using clock = std::chrono::steady_clock;
+    double& seconds_;
+    clock::time_point start_;
+};
+
+}  // namespace
+
+void Simulation::Impl::step() {
+    if (state.age.outdated) {
+        Timed timed(profile.neighbors);
+        update_lists();
+    }
+    {
+        Timed timed(profile.contacts);
+        stage.contacts(state, law, constants);
+    }
+    {
+        Timed timed(profile.boundary);
+        stage.walls(state, law, constants);
+    }
+    {
+        Timed timed(profile.dynamics);
+        ++state.age.steps;
+        stage.integrate(state, constants, margin_rule.trigger);
+        std::uint32_t flag[2];
+        detail::copy(Device::cpu, flag, options.device, state.flags.data(), sizeof flag);
+        state.age.outdated = flag[0] != ~0u || state.age.steps >= state.age.limit;
+    }
+    ++step_number;
+    ++steps_since_start;
+    if (planes_move) place_planes();
+}
+
+/// Sort, margins, search, then the histories of the old lists into the new ones.
+void Simulation::Impl::update_lists() {
+    stage.sort(state, old_index);
+    stage.margins(state, constants, margin_rule, spheres);
+
+    const float* s = spheres.data();
+    search.find(Points{s, s + 1, s + 2, 4, s + 3, 4, 0, state.particles.id.data(), state.size()}, found);
+    std::swap(state.grains, old_grains);
+    state.grains.offsets.swap(found.offsets);
+    state.grains.partners.swap(found.neighbors);
+    state.grains.history.resize_discard_slack(state.grains.partners.size());
+    stage.carry_pairs(old_grains, old_index, state.grains);
+
+    std::swap(state.walls, old_walls);
+    stage.wall_candidates(state, constants, state.walls);
+    stage.carry_walls(old_walls, old_index, state.walls);
+
+    detail::copy(options.device, state.flags.data(), Device::cpu, std::array{~0u, ~0u}.data(), 2 * sizeof(std::uint32_t));
+    state.age.steps = 0;
+    state.age.outdated = false;
+    ++rebuilds;
+}
+
+void Simulation::Impl::place_planes() {
+    std::vector<PlaneNow> now;
+    now.reserve(scene.planes.size());
+    const Vec3d origin = state.particles.scale.origin;
+    for (const Plane& plane : scene.planes) {
+        const PlaneState p = plane_at(plane, time());
+        const Motion& m = plane.motion;
+        const double swing = length(m.oscillation_amplitude) * 6.2831853071795865 * m.oscillation_frequency;
+        now.push_back({p.point - origin, p.normal, p.centre - origin, convert<float>(p.velocity), convert<float>(p.angular_velocity),
+                       length(m.velocity) + std::fabs(swing), std::fabs(m.rotation_rate)});
+    }
+    if (state.planes.size() != now.size()) state.planes.resize_discard(now.size());
+    if (!now.empty()) detail::copy(options.device, state.planes.data(), Device::cpu, now.data(), now.size() * sizeof(PlaneNow));
+}
+
+void Simulation::step() {
+    if (impl_->state.size()) impl_->threads.run([&] { impl_->step(); });
+    else ++impl_->step_number;
+}
+
+void Simulation::run(std::uint64_t steps) {
+    if (impl_->state.size() == 0) impl_->step_number += steps;
+    else impl_->threads.run([&] {
+        for (std::uint64_t k = 0; k < steps; ++k) impl_->step();
+    });
+}
+
+std::size_t Simulation::size() const { return impl_->state.size(); }
+std::uint64_t Simulation::step_count() const { return impl_->step_number; }
+double Simulation::time() const { return impl_->time(); }
+double Simulation::dt() const { return impl_->scene.dt; }
+Device Simulation::device() const { return impl_->options.device; }
+const Profile& Simulation::profile() const { return impl_->profile; }
+Profile& Simulation::profile() { return impl_->profile; }
+
+}  // namespace grainray

@@ -1,0 +1,41 @@
+// The inside of a Simulation, for the files that implement it: simulation.cpp (steps), setup.cpp (making and restarting),
+// observe.cpp (looking at it).
+#pragma once
+
+#include "exec/threads.hpp"
+#include "grainray/simulation.hpp"
+#include "state.hpp"
+
+namespace grainray {
+
+struct Simulation::Impl {
+    Scene scene;
+    SimulationOptions options;
+    Threads threads;
+    State state;
+    NeighborSearch search;
+    const Stages& stage;
+
+    ContactLaw law;
+    StepConstants constants;
+    MarginRule margin_rule;
+    ContactList old_grains, old_walls;       ///< the lists before the last build; their memory is the next one's
+    NeighborList found;
+    Array<std::uint32_t> old_index;
+    Array<float> spheres;                    ///< x y z reach, handed to the search
+
+    std::uint64_t step_number = 0;
+    std::uint64_t rebuilds = 0, steps_since_start = 0;
+    double critical_dt = 0;
+    bool planes_move = false;
+    Profile profile;
+
+    Impl(const Scene&, const SimulationOptions&, const PositionScale&, const InitialState& sizes);
+
+    void step();
+    void update_lists();
+    void place_planes();                     ///< where they are at time()
+    double time() const { return static_cast<double>(step_number) * scene.dt; }
+};
+
+}  // namespace grainray

@@ -1,0 +1,10 @@
+// The table of one executor's stages.
+#include "stages.hpp"
+
+#include "exec/exec.hpp"
+
+namespace grainray::GRAINRAY_EXEC {
+
+const Stages stage_table{sort, margins, wall_candidates, carry_pairs, carry_walls, contacts, walls, integrate};
+
+}  // namespace grainray::GRAINRAY_EXEC
