@@ -37,7 +37,7 @@ struct View {
     GR_HD T& operator[](std::size_t i) const { return data[i]; }
     GR_HD T* begin() const { return data; }
     GR_HD T* end() const { return data + size; }
-    GR_HD operator View<const T>() const { return {data, size}; }
+    GR_HD operator View<const T>() const requires(!std::is_const_v<T>) { return {data, size}; }
 };
 
 /// Owning array of trivially copyable T on one device. Grows by doubling and never shrinks.

@@ -53,7 +53,7 @@ struct alignas(64) Batch {
 
 template <class Law>
 [[gnu::always_inline]] inline void evaluate(const Law& law, float unit, Batch& b) {
-#pragma omp simd
+#pragma GCC ivdep
     for (int l = 0; l < width; ++l) {
         Vec3f h{b.history[0][l], b.history[1][l], b.history[2][l]};
         const PairForce f = pair_force(law, Separation{b.x[l], b.y[l], b.z[l], b.gap[l]}, b.radius_i[l], b.radius_j[l],

@@ -1,5 +1,6 @@
-// Checkpoints: HDF5, a dataset an array, numbers as attributes of the root group. HDF5 builds the file in memory and
-// AtomicFile puts it on disk: a full disk is one clear error and never an HDF5 library in an undefined state.
+// Checkpoints: HDF5, a dataset an array, numbers as attributes of the root group, and after what HDF5 reads a seal over
+// the bytes of the file. HDF5 never meets a full disk or a damaged file, which leave the library in an undefined state:
+// it builds the file in memory for AtomicFile to write, and it opens a file only once the seal was found whole.
 #include <optional>
 #include <utility>
 
@@ -81,6 +82,29 @@ Handle string_type(std::size_t length) {
     Handle type(H5Tcreate(H5T_STRING, length + 1), H5Tclose, "string type");
     check(H5Tset_cset(type, H5T_CSET_UTF8), "string type");
     return type;
+}
+
+/// The last bytes of a checkpoint. A file without one (repacked by an HDF5 tool) is judged by its payload alone.
+struct Seal {
+    char mark[8] = {'g', 'r', 'a', 'i', 'n', 'r', 'a', 'y'};
+    std::uint64_t checksum = 0;
+};
+
+Seal seal_of(std::string_view bytes) {
+    Checksum sum;
+    sum.add(bytes.data(), bytes.size());
+    Seal seal;
+    seal.checksum = sum.value();
+    return seal;
+}
+
+bool has_broken_seal(std::string_view file) {
+    Seal seal;
+    if (file.size() < sizeof seal) return false;
+    const std::string_view bytes = file.substr(0, file.size() - sizeof seal);
+    std::memcpy(&seal, file.data() + bytes.size(), sizeof seal);
+    const Seal whole = seal_of(bytes);
+    return std::memcmp(seal.mark, whole.mark, sizeof seal.mark) == 0 && seal.checksum != whole.checksum;
 }
 
 // ---- writing
@@ -167,7 +191,9 @@ void get_scene(hid_t file, std::string& text) {
 }
 
 bool has_format(hid_t file) {
-    if (H5Aexists(file, "format") <= 0) return false;
+    const htri_t exists = H5Aexists(file, "format");
+    check(exists, "format");
+    if (exists == 0) return false;
     Handle attribute(H5Aopen(file, "format", H5P_DEFAULT), H5Aclose, "format");
     Handle type(H5Aget_type(attribute), H5Tclose, "format");
     if (H5Tget_class(type) != H5T_STRING || H5Tis_variable_str(type) != 0) return false;
@@ -178,6 +204,7 @@ bool has_format(hid_t file) {
 
 Handle open_file(const std::filesystem::path& path) {
     if (H5Fis_hdf5(path.c_str()) <= 0) throw_read_error(path, "it is not an HDF5 file, so not a grainray checkpoint");
+    if (has_broken_seal(read_text(path))) throw Hdf5Failure{"seal"};
     Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, "file access");
     check(H5Pset_file_locking(access, false, true), "file access");  // many network file systems have no locks
     return Handle(H5Fopen(path.c_str(), H5F_ACC_RDONLY, access), H5Fclose, "the file");
@@ -217,8 +244,11 @@ void write_checkpoint(const std::filesystem::path& path, const Checkpoint& c) {
         check(H5Fget_vfd_handle(file, H5P_DEFAULT, reinterpret_cast<void**>(&memory)), "memory file");
         const ssize_t size = H5Fget_file_image(file, nullptr, 0);  // the buffer itself is larger
         check(size < 0 ? -1 : 0, "memory file");
+        const std::string_view bytes(static_cast<const char*>(*memory), static_cast<std::size_t>(size));
+        const Seal seal = seal_of(bytes);
         AtomicFile out(path);
-        out.write({static_cast<const char*>(*memory), static_cast<std::size_t>(size)});
+        out.write(bytes);
+        out.write({reinterpret_cast<const char*>(&seal), sizeof seal});
         out.commit();
     } catch (const Hdf5Failure& failure) {
         throw SimulationError(fmt::format("cannot write {}: HDF5 failed at '{}', most likely out of memory", path.string(), failure.what));

@@ -47,29 +47,36 @@ public:
     void write(const std::filesystem::path& path, const Frame& frame, const std::vector<std::string>& names) const override {
         const auto fields = selected_fields(frame, names);
         Sink sink(path);
-        put_head(sink, frame);
+        put_head(sink, frame.size());
         put_array(sink, "Points", "Float64", 3, std::as_bytes(std::span(frame.position)));
         sink.put("</Points>\n<Verts>\n");
         put_vertices(sink, frame.size());
         sink.put("</Verts>\n<PointData>\n");
         for (const Field* field : fields)
             put_array(sink, field->name, field->is_integer() ? "UInt32" : "Float32", field->components(), field->bytes(frame));
-        sink.put("</PointData>\n</Piece>\n</PolyData>\n</VTKFile>\n");
+        sink.put("</PointData>\n");
+        put_tail(sink, frame);
         sink.commit();
     }
 
 private:
-    void put_head(Sink& sink, const Frame& frame) const {
+    void put_head(Sink& sink, std::size_t count) const {
         sink.put(fmt::format(
             "<?xml version=\"1.0\"?>\n"
             "<VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\"{}>\n"
-            "<PolyData>\n<FieldData>\n"
+            "<PolyData>\n<Piece NumberOfPoints=\"{}\" NumberOfVerts=\"{}\" NumberOfLines=\"0\" NumberOfStrips=\"0\" NumberOfPolys=\"0\">\n"
+            "<Points>\n",
+            compressed_ ? " compressor=\"vtkZLibDataCompressor\"" : "", count, count));
+    }
+
+    /// After the piece: OVITO does not recognise a file that starts with its field data.
+    static void put_tail(Sink& sink, const Frame& frame) {
+        sink.put(fmt::format(
+            "</Piece>\n<FieldData>\n"
             "<DataArray type=\"Float64\" Name=\"TimeValue\" NumberOfTuples=\"1\" format=\"ascii\">{}</DataArray>\n"
             "<DataArray type=\"UInt64\" Name=\"Step\" NumberOfTuples=\"1\" format=\"ascii\">{}</DataArray>\n"
-            "</FieldData>\n"
-            "<Piece NumberOfPoints=\"{}\" NumberOfVerts=\"{}\" NumberOfLines=\"0\" NumberOfStrips=\"0\" NumberOfPolys=\"0\">\n"
-            "<Points>\n",
-            compressed_ ? " compressor=\"vtkZLibDataCompressor\"" : "", frame.time, frame.step, frame.size(), frame.size()));
+            "</FieldData>\n</PolyData>\n</VTKFile>\n",
+            frame.time, frame.step));
     }
 
     void put_array(Sink& sink, std::string_view name, std::string_view type, std::size_t components,

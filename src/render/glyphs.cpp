@@ -50,7 +50,6 @@ class Pen {
 public:
     explicit Pen(std::string_view path) {
         for (rest_ = path; !rest_.empty();) command();
-        result.width = std::max(result.width, 0.f);
     }
     Lettering result;
 
@@ -63,7 +62,7 @@ private:
         else if (what == 'L') line(a, b);
         else if (what == 'q') {
             const float c = number(), d = number();
-            curve([=, this, x = x_, y = y_](float t) {
+            curve([=, x = x_, y = y_](float t) {
                 const float s = 1 - t;
                 return std::pair{s * s * x + 2 * s * t * a + t * t * c, s * s * y + 2 * s * t * b + t * t * d};
             });

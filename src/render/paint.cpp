@@ -59,8 +59,8 @@ const Field& find_field(const std::string& name) {
 Values sphere_values(const Frame& frame, const Field& field, const Subject& subject) {
     const Values all = field.values(frame);
     if (all.size() != frame.size())
-        throw InputError(fmt::format("render.color_by = \"{}\" needs the field \"{}\", which the frame lacks: write it too, or colour by another",
-                                     field.name, field.needs));
+        throw InputError(fmt::format("render.color_by = \"{}\" needs the field \"{}\", which the frame lacks: write it too, "
+                                     "or colour by another", field.name, field.needs));
     Values values(subject.index.size());
     for (std::size_t k = 0; k < values.size(); ++k) values[k] = all[subject.index[k]];
     return values;

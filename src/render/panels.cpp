@@ -1,5 +1,7 @@
 #include "render/panels.hpp"
 
+#include <algorithm>
+
 #include "render/math.hpp"
 
 namespace grainray::picture {
@@ -67,6 +69,12 @@ std::vector<HalfSpace> local_planes(const Scene& scene, const Subject& subject, 
     return planes;
 }
 
+double mean_radius(const Subject& subject) {
+    double sum = 0;
+    for (const Sphere& s : subject.spheres) sum += s.radius;
+    return subject.spheres.empty() ? 0 : sum / static_cast<double>(subject.spheres.size());
+}
+
 /// Looks as far as `reach`: where the room still goes on there it is open and gets the particles' bounds instead.
 void measure(Room& room, std::vector<HalfSpace> sides, const Box& bounds, double pad, double reach) {
     const std::size_t planes = sides.size();
@@ -105,7 +113,7 @@ Box fade_box(const Room& room) {
 
 Room make_room(const Scene& scene, const Subject& subject, const Vec3d& up, double time) {
     Room room;
-    const double diagonal = subject.diagonal(), pad = 0.02 * diagonal;
+    const double diagonal = subject.diagonal(), pad = std::max(0.02 * diagonal, mean_radius(subject));
     room.fade = 0.35 * diagonal;
     const std::vector<HalfSpace> planes = local_planes(scene, subject, time);
     measure(room, planes, subject.bounds, pad, 1.5 * diagonal);
@@ -116,8 +124,10 @@ Room make_room(const Scene& scene, const Subject& subject, const Vec3d& up, doub
         for (const HalfSpace& f : box_faces(padded(box, 1e-6 * diagonal))) sides.push_back(f);
         return face(sides[k], sides, 2 * diagonal + length(box.extent()));
     };
+    const auto faces_up = [&](const HalfSpace& plane, double least) { return dot(plane.normal, normalized(up)) > least; };
+    const bool one_ground = std::count_if(planes.begin(), planes.end(), [&](const HalfSpace& p) { return faces_up(p, 0.7); }) == 1;
     for (std::size_t k = 0; k < planes.size(); ++k) {
-        Panel panel{planes[k].point, planes[k].normal, within(room.box, k), {}, dot(planes[k].normal, normalized(up)) > 0.7};
+        Panel panel{planes[k].point, planes[k].normal, within(room.box, k), {}, one_ground && faces_up(planes[k], 0.9)};
         panel.surface = panel.floor ? within(fade_box(room), k) : panel.outline;
         if (panel.surface.size() > 2) room.panels.push_back(std::move(panel));
     }

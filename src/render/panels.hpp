@@ -12,7 +12,7 @@ struct Panel {
     Vec3d point, normal;          ///< the normal points into the particles' room
     std::vector<Vec3d> outline;   ///< corners within the display box, for lines and framing
     std::vector<Vec3d> surface;   ///< corners of the part to fill: a floor reaches farther than its outline and fades
-    bool floor = false;
+    bool floor = false;           ///< the ground: the only plane that faces up
     bool shows_face(const Vec3d& eye) const { return dot(normal, eye - point) > 0; }
 };
 

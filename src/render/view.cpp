@@ -25,7 +25,7 @@ Vec3d three_quarter(const Vec3d& up, const Vec3d& extent) {
     const Vec3d x = sideways(up), y = cross(up, x);
     const auto size = [&](const Vec3d& a) { return std::abs(a.x) * extent.x + std::abs(a.y) * extent.y + std::abs(a.z) * extent.z; };
     const double slender = size(x) / (size(x) + size(y) + size(up));
-    const double azimuth = (slender < 0.5 ? 28 : 28 - 30 * (slender - 0.5)) * degree, elevation = 24 * degree;
+    const double azimuth = (slender < 0.5 ? 28 : 28 - 40 * (slender - 0.5)) * degree, elevation = 24 * degree;
     const Vec3d from = (x * std::sin(azimuth) - y * std::cos(azimuth)) * std::cos(elevation) + up * std::sin(elevation);
     return -from;
 }

@@ -23,7 +23,8 @@ MaterialPair mixed(const Material& a, const Material& b) {
 }
 
 bool names(const PairRow& row, const Material& a, const Material& b) {
-    return (row.materials[0] == a.name && row.materials[1] == b.name) || (row.materials[0] == b.name && row.materials[1] == a.name);
+    return (row.materials[0] == a.name && row.materials[1] == b.name) ||
+           (row.materials[0] == b.name && row.materials[1] == a.name);
 }
 
 }  // namespace

@@ -24,8 +24,10 @@ std::vector<std::string_view> split(std::string_view row) {
     for (;;) {
         const auto comma = row.find(',');
         std::string_view cell = row.substr(0, comma);
-        while (!cell.empty() && std::string_view(" \t\r\"").find(cell.front()) != std::string_view::npos) cell.remove_prefix(1);
-        while (!cell.empty() && std::string_view(" \t\r\"").find(cell.back()) != std::string_view::npos) cell.remove_suffix(1);
+        while (!cell.empty() && std::string_view(" \t\r\"").find(cell.front()) != std::string_view::npos)
+            cell.remove_prefix(1);
+        while (!cell.empty() && std::string_view(" \t\r\"").find(cell.back()) != std::string_view::npos)
+            cell.remove_suffix(1);
         cells.push_back(cell);
         if (comma == std::string_view::npos) return cells;
         row.remove_prefix(comma + 1);
@@ -53,9 +55,10 @@ Columns find_columns(const std::vector<std::string_view>& header, const std::str
             columns[k] = static_cast<std::ptrdiff_t>(c);
         }
     const auto require = [&](std::size_t k) {
-        if (columns[k] < 0)
-            reject(file, line, fmt::format("the header has no column '{}'{} Needed: x, y, z, radius; all or none of vx, vy, vz and of wx, wy, wz", column_names[k],
-                                           did_you_mean(column_names[k], header).empty() ? "." : did_you_mean(column_names[k], header)));
+        if (columns[k] >= 0) return;
+        reject(file, line, fmt::format("the header has no column '{}'{} Needed: x, y, z, radius; all or none of vx, vy, vz "
+                                       "and of wx, wy, wz",
+                                       column_names[k], did_you_mean(column_names[k], header)));
     };
     for (std::size_t k = 0; k < 4; ++k) require(k);
     for (const std::size_t k : {4u, 7u})
@@ -67,7 +70,8 @@ double number(std::string_view cell, std::string_view column, const std::string&
     double value = 0;
     if (cell.starts_with('+')) cell.remove_prefix(1);
     const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
-    if (error != std::errc{} || end != cell.data() + cell.size()) reject(file, line, fmt::format("column '{}': '{}' is not a number", column, cell));
+    if (error != std::errc{} || end != cell.data() + cell.size())
+        reject(file, line, fmt::format("column '{}': '{}' is not a number", column, cell));
     if (!std::isfinite(value)) reject(file, line, fmt::format("column '{}': {} is not a finite number", column, value));
     return value;
 }
@@ -82,7 +86,8 @@ void place_file(const Scene& scene, const ParticleGroup& group, const ParticleFi
     std::ifstream in(path);
     std::error_code ignored;
     if (!in || std::filesystem::is_directory(path, ignored))
-        throw InputError(fmt::format("{}.path: '{}' cannot be read; give a CSV file, relative to the scene file", place_of(scene, group), file));
+        throw InputError(fmt::format("{} = \"{}\": {} cannot be read; give a CSV file, relative to the scene file",
+                                     place_of(scene, group, "path"), placement.path.string(), file));
     std::string row;
     std::size_t line = 0;
     if (!next_row(in, row, line)) reject(file, 1, "is empty; expected a header such as x,y,z,radius");
@@ -90,10 +95,12 @@ void place_file(const Scene& scene, const ParticleGroup& group, const ParticleFi
     const Columns columns = find_columns(split(row), file, line);
     while (next_row(in, row, line)) {
         const auto cells = split(row);
-        if (cells.size() != width) reject(file, line, fmt::format("has {} values, the header has {} columns", cells.size(), width));
+        if (cells.size() != width)
+            reject(file, line, fmt::format("has {} values, the header has {} columns", cells.size(), width));
         std::array<double, 10> values{};
         for (std::size_t k = 0; k < values.size(); ++k)
-            if (columns[k] >= 0) values[k] = number(cells[static_cast<std::size_t>(columns[k])], column_names[k], file, line);
+            if (columns[k] >= 0)
+                values[k] = number(cells[static_cast<std::size_t>(columns[k])], column_names[k], file, line);
         if (!(values[3] > 0)) reject(file, line, fmt::format("column 'radius': {} must be greater than 0", values[3]));
         state.positions.push_back(triple(values, 0));
         state.radii.push_back(values[3]);

@@ -17,7 +17,8 @@ std::string found(const Value& value) { return "found " + value.type(); }
 
 void check_range(const Node& node, const FieldInfo& field, double value) {
     if (!std::isfinite(value)) fail(node, "must be a finite number" + typical(field));
-    if (!field.range.contains(value)) fail(node, fmt::format("must be {}{}", field.range.text(field.unit), typical(field)));
+    if (!field.range.contains(value))
+        fail(node, fmt::format("must be {}{}", field.range.text(field.unit), typical(field)));
 }
 
 std::string with_unit(double value, const Unit& unit) {
@@ -32,9 +33,11 @@ bool Range::contains(double value) const {
 
 std::string Range::text(const Unit& unit) const {
     std::string out;
-    if (std::isfinite(lower)) out = fmt::format("{} {}", open_lower ? "greater than" : "at least", with_unit(lower, unit));
+    if (std::isfinite(lower))
+        out = fmt::format("{} {}", open_lower ? "greater than" : "at least", with_unit(lower, unit));
     if (std::isfinite(upper))
-        out += fmt::format("{}{} {}", out.empty() ? "" : " and ", open_upper ? "less than" : "at most", with_unit(upper, unit));
+        out += fmt::format("{}{} {}", out.empty() ? "" : " and ", open_upper ? "less than" : "at most",
+                           with_unit(upper, unit));
     return out;
 }
 
@@ -53,7 +56,8 @@ void read(const Node& node, const FieldInfo& field, double& out) {
 void read(const Node& node, const FieldInfo& field, std::int64_t& out) {
     const Value& value = *node.value;
     const auto* number = std::get_if<double>(&value.data);
-    if (number && *number == std::floor(*number) && std::abs(*number) <= 0x1p53) out = static_cast<std::int64_t>(*number);  // 2e4
+    if (number && *number == std::floor(*number) && std::abs(*number) <= 0x1p53)
+        out = static_cast<std::int64_t>(*number);  // 2e4
     else if (const auto* integer = std::get_if<std::int64_t>(&value.data)) out = *integer;
     else fail(node, fmt::format("expected an integer, {}{}", found(value), typical(field)));
     check_range(node, field, static_cast<double>(out));
@@ -84,8 +88,7 @@ std::size_t read_choice(const Node& node, const FieldInfo& field) {
     if (!text) fail(node, fmt::format("expected one of {}, {}", join(field.choices), found(*node.value)));
     const auto choice = std::find(field.choices.begin(), field.choices.end(), *text);
     if (choice == field.choices.end())
-        fail(node, fmt::format("unknown value{}{} Allowed: {}", did_you_mean(*text, field.choices),
-                               did_you_mean(*text, field.choices).empty() ? "." : "", join(field.choices)));
+        fail(node, fmt::format("unknown value{} Allowed: {}", did_you_mean(*text, field.choices), join(field.choices)));
     return static_cast<std::size_t>(choice - field.choices.begin());
 }
 
@@ -102,18 +105,21 @@ void read(const Node& node, const FieldInfo& field, std::vector<double>& out) {
 
 std::vector<Node> elements(const Node& node, std::size_t count, const std::string& what) {
     const List* list = node.value->list();
-    const std::string wanted = count ? fmt::format("expected an array of {} values ({})", count, what) : fmt::format("expected an array ({})", what);
+    const std::string wanted = count ? fmt::format("expected an array of {} values ({})", count, what)
+                                     : fmt::format("expected an array ({})", what);
     if (!list) fail(node, fmt::format("{}, {}", wanted, found(*node.value)));
     if (count && list->size() != count) fail(node, fmt::format("{}, found {}", wanted, list->size()));
     std::vector<Node> nodes;
     nodes.reserve(list->size());
-    for (const Value& value : *list) nodes.push_back({&value, value.place, fmt::format("{}[{}]", node.key, nodes.size())});
+    for (const Value& value : *list)
+        nodes.push_back({&value, value.place, fmt::format("{}[{}]", node.key, nodes.size())});
     return nodes;
 }
 
 void fail_missing(const Node& table, const FieldInfo& field) {
     std::string hint = field.choices.empty() ? typical(field) : " (one of " + join(field.choices) + ")";
-    throw InputError(fmt::format("{}: key '{}' is missing: {}{}", table.place.text(), table.key_of(field.key), field.text, hint));
+    throw InputError(
+        fmt::format("{}: key '{}' is missing: {}{}", table.place.text(), table.key_of(field.key), field.text, hint));
 }
 
 void check_keys(const Node& table, std::vector<std::string_view> known, const std::string& of) {
@@ -123,7 +129,7 @@ void check_keys(const Node& table, std::vector<std::string_view> known, const st
         const std::string guess = did_you_mean(entry.key, known);
         std::sort(known.begin(), known.end());
         throw InputError(fmt::format("{}: key '{}': {}{} Allowed: {}", entry.place.text(), table.key_of(entry.key),
-                                     of.empty() ? "unknown key" : "not a key of " + of, guess.empty() ? "." : guess, join(known)));
+                                     of.empty() ? "unknown key" : "not a key of " + of, guess, join(known)));
     }
 }
 
@@ -132,14 +138,22 @@ std::string TypeText<double>::show(const double& value, const FieldInfo&) {
     return std::isfinite(value) ? fmt::format("{}", value) : "none";
 }
 std::string TypeText<std::int64_t>::name(const FieldInfo&) { return "integer"; }
-std::string TypeText<std::int64_t>::show(const std::int64_t& value, const FieldInfo&) { return fmt::format("{}", value); }
+std::string TypeText<std::int64_t>::show(const std::int64_t& value, const FieldInfo&) {
+    return fmt::format("{}", value);
+}
 std::string TypeText<std::uint64_t>::name(const FieldInfo&) { return "integer"; }
-std::string TypeText<std::uint64_t>::show(const std::uint64_t& value, const FieldInfo&) { return fmt::format("{}", value); }
+std::string TypeText<std::uint64_t>::show(const std::uint64_t& value, const FieldInfo&) {
+    return fmt::format("{}", value);
+}
 std::string TypeText<bool>::name(const FieldInfo&) { return "true or false"; }
 std::string TypeText<bool>::show(const bool& value, const FieldInfo&) { return value ? "true" : "false"; }
 std::string TypeText<std::string>::name(const FieldInfo& f) { return f.choices.empty() ? "string" : "choice"; }
-std::string TypeText<std::string>::show(const std::string& value, const FieldInfo&) { return '"' + value + '"'; }
+std::string TypeText<std::string>::show(const std::string& value, const FieldInfo&) {
+    return fmt::format("\"{}\"", value);
+}
 std::string TypeText<Vec3d>::name(const FieldInfo&) { return "3 x number"; }
-std::string TypeText<Vec3d>::show(const Vec3d& v, const FieldInfo&) { return fmt::format("[{}, {}, {}]", v.x, v.y, v.z); }
+std::string TypeText<Vec3d>::show(const Vec3d& v, const FieldInfo&) {
+    return fmt::format("[{}, {}, {}]", v.x, v.y, v.z);
+}
 
 }  // namespace grainray::scene

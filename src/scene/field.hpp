@@ -69,7 +69,7 @@ template <class T>
 struct TypeText {
     static std::string name(const FieldInfo&) { return "choice"; }
     static std::string show(const T& value, const FieldInfo& field) {
-        return '"' + std::string(field.choices[static_cast<std::size_t>(value)]) + '"';
+        return std::string("\"").append(field.choices[static_cast<std::size_t>(value)]).append("\"");
     }
 };
 #define GRAINRAY_TYPE_TEXT(T)                            \
@@ -100,8 +100,8 @@ struct TypeText<std::array<T, N>> {
     static std::string name(const FieldInfo& f) { return std::to_string(N) + " x " + TypeText<T>::name(f); }
     static std::string show(const std::array<T, N>& values, const FieldInfo& f) {
         std::string out;
-        for (const T& value : values) out += (out.empty() ? "[" : ", ") + TypeText<T>::show(value, f);
-        return out + "]";
+        for (const T& value : values) out.append(out.empty() ? "[" : ", ").append(TypeText<T>::show(value, f));
+        return out.append("]");
     }
 };
 

@@ -34,8 +34,7 @@ std::optional<Value> parse_value(const std::string& text, const Origin& origin) 
     try {
         const toml::table parsed = toml::parse("v=" + text);
         if (parsed.size() == 1) return convert(*parsed.get("v"), origin, false);
-    } catch (const toml::parse_error&) {
-    }
+    } catch (const toml::parse_error&) {}
     return std::nullopt;
 }
 
@@ -49,9 +48,11 @@ Value value_of(const std::string& text, const Origin& origin) {
 
 Value& element(Value& list, const std::string& part, const Origin& origin) {
     auto& items = std::get<List>(list.data);
-    const bool digits = !part.empty() && part.size() < 10 && std::all_of(part.begin(), part.end(), [](char c) { return c >= '0' && c <= '9'; });
+    const bool digits = !part.empty() && part.size() < 10 &&
+                        std::all_of(part.begin(), part.end(), [](char c) { return c >= '0' && c <= '9'; });
     if (!digits || std::stoul(part) >= items.size())
-        reject(origin, fmt::format("'{}' is no element of an array of {}; elements are numbered from 0", part, items.size()));
+        reject(origin,
+               fmt::format("'{}' is no element of an array of {}; elements are numbered from 0", part, items.size()));
     return items[std::stoul(part)];
 }
 
@@ -70,14 +71,17 @@ void apply_override(Value& document, const std::string& setting) {
     const auto equals = setting.find('=');
     if (equals == std::string::npos) reject(origin, "expected key=value, for example --set simulation.dt=5e-4");
     const auto path = split_key(setting.substr(0, equals));
-    if (path.empty()) reject(origin, fmt::format("'{}' is not a key; write it as in the scene, for example simulation.dt", setting.substr(0, equals)));
+    if (path.empty())
+        reject(origin, fmt::format("'{}' is not a key; write it as in the scene, for example simulation.dt",
+                                   setting.substr(0, equals)));
 
     Value* target = &document;
     std::string walked;
     for (const std::string& part : path) {
         if (target->list()) target = &element(*target, part, origin);
         else if (target->table()) target = &entry(*target, part, origin);
-        else reject(origin, fmt::format("key '{}' is {}, not a table, so it has no '{}'", walked, target->type(), part));
+        else
+            reject(origin, fmt::format("key '{}' is {}, not a table, so it has no '{}'", walked, target->type(), part));
         walked += (walked.empty() ? "" : ".") + part;
     }
     const auto begin = setting.find_first_not_of(" \t", equals + 1);

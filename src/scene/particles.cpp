@@ -14,8 +14,10 @@ constexpr double most_particles = 2147483648.0;  // 2^31: ids are 32-bit
 Lattice read_lattice(const Node& table) {
     Lattice lattice;
     read_fields(table, schema().lattice, lattice);
-    const double total = static_cast<double>(lattice.count[0]) * static_cast<double>(lattice.count[1]) * static_cast<double>(lattice.count[2]);
-    if (total > most_particles) fail_key(table, "count", fmt::format("{:.3g} particles are too many; at most 2^31 = 2147483648", total));
+    const double total = static_cast<double>(lattice.count[0]) * static_cast<double>(lattice.count[1]) *
+                         static_cast<double>(lattice.count[2]);
+    if (total > most_particles)
+        fail_key(table, "count", fmt::format("{:.3g} particles are too many; at most 2^31 = 2147483648", total));
     return lattice;
 }
 
@@ -24,7 +26,8 @@ ParticleList read_list(const Node& table) {
     read_fields(table, schema().list, list);
     const std::size_t n = list.positions.size();
     const auto check = [&](std::string_view key, std::size_t given, bool allowed) {
-        if (given != n && !allowed) fail_key(table, key, fmt::format("has {} values for {} positions; give one a particle", given, n));
+        if (given != n && !allowed)
+            fail_key(table, key, fmt::format("has {} values for {} positions; give one a particle", given, n));
     };
     check("radii", list.radii.size(), list.radii.size() == 1);
     check("velocities", list.velocities.size(), list.velocities.empty());
@@ -36,13 +39,18 @@ RandomFill read_fill(const Node& table, const Scene& s) {
     FillRow row;
     read_fields(table, schema().fill, row);
     if (row.count && row.solid_fraction) fail_key(table, "solid_fraction", "give count or solid_fraction, not both");
-    if (!row.count && !row.solid_fraction) fail_key(table, "count", "a fill needs one of count and solid_fraction (a typical value is solid_fraction = 0.25)");
+    if (!row.count && !row.solid_fraction)
+        fail_key(table, "count",
+                 "a fill needs one of count and solid_fraction (a typical value is solid_fraction = 0.25)");
     for (int axis = 0; axis < 3; ++axis) {
         if (!(row.upper[axis] > row.lower[axis]))
-            fail_key(table, "upper", fmt::format("must be greater than 'lower' along {} ({} m)", "xyz"[axis], row.lower[axis]));
-        if (const auto& box = s.domain.box; box && (row.lower[axis] < box->lower[axis] || row.upper[axis] > box->upper[axis]))
+            fail_key(table, "upper",
+                     fmt::format("must be greater than 'lower' along {} ({} m)", "xyz"[axis], row.lower[axis]));
+        if (const auto& box = s.domain.box;
+            box && (row.lower[axis] < box->lower[axis] || row.upper[axis] > box->upper[axis]))
             fail_key(table, row.lower[axis] < box->lower[axis] ? "lower" : "upper",
-                     fmt::format("leaves the domain along {} ({} to {} m)", "xyz"[axis], box->lower[axis], box->upper[axis]));
+                     fmt::format("leaves the domain along {} ({} to {} m)", "xyz"[axis], box -> lower[axis],
+                                 box -> upper[axis]));
     }
     return {{row.lower, row.upper}, row.count.value_or(0), row.solid_fraction.value_or(0)};
 }
@@ -64,7 +72,9 @@ SizeDistribution read_size(const Node& table, SizeRow row) {
     read_fields(table, schema().size_laws[static_cast<std::size_t>(row.law)], row);
     if (row.law == SizeLaw::normal || row.law == SizeLaw::lognormal) {
         default_cutoffs(row);
-        if (!(*row.minimum > 0)) fail_key(table, "radius_minimum", "the mean less 3 deviations is not positive; give the smallest radius to keep");
+        if (!(*row.minimum > 0))
+            fail_key(table, "radius_minimum",
+                     "the mean less 3 deviations is not positive; give the smallest radius to keep");
     }
     if (row.minimum && !(*row.maximum > *row.minimum))
         fail_key(table, "radius_maximum", fmt::format("must be greater than radius_minimum ({} m)", *row.minimum));
@@ -72,10 +82,14 @@ SizeDistribution read_size(const Node& table, SizeRow row) {
         if (row.radii.empty()) fail_key(table, "radii", "must name at least one radius");
         if (row.weights.empty()) row.weights.assign(row.radii.size(), 1.0);
         if (row.weights.size() != row.radii.size())
-            fail_key(table, "weights", fmt::format("has {} values for {} radii; give one a radius", row.weights.size(), row.radii.size()));
-        if (*std::max_element(row.weights.begin(), row.weights.end()) <= 0) fail_key(table, "weights", "at least one must be greater than 0");
+            fail_key(
+                table, "weights",
+                fmt::format("has {} values for {} radii; give one a radius", row.weights.size(), row.radii.size()));
+        if (*std::max_element(row.weights.begin(), row.weights.end()) <= 0)
+            fail_key(table, "weights", "at least one must be greater than 0");
     }
-    return {row.law, row.radius, row.minimum.value_or(0), row.maximum.value_or(0), row.mean, row.deviation, row.radii, row.weights};
+    return {row.law,   row.radius, row.minimum.value_or(0), row.maximum.value_or(0), row.mean, row.deviation,
+            row.radii, row.weights};
 }
 
 /// Throws for a key that this type (and size law) has no use for.
@@ -83,7 +97,8 @@ void check_group_keys(const Node& table, const PlacementRow& placement, const Si
     std::vector<std::string_view> known;
     append_keys(known, schema().placement);
     append_keys(known, schema().group);
-    std::string of = fmt::format("type = \"{}\"", schema().placement.fields[0].choices[static_cast<std::size_t>(placement.type)]);
+    std::string of =
+        fmt::format("type = \"{}\"", schema().placement.fields[0].choices[static_cast<std::size_t>(placement.type)]);
     switch (placement.type) {
         case Placement::lattice: append_keys(known, schema().lattice); break;
         case Placement::list: append_keys(known, schema().list); break;

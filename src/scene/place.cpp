@@ -36,13 +36,14 @@ void place_list(const ParticleList& list, InitialState& state) {
     if (list.radii.size() == 1) state.radii.insert(state.radii.end(), n, list.radii.front());
     else state.radii.insert(state.radii.end(), list.radii.begin(), list.radii.end());
     state.velocities.insert(state.velocities.end(), list.velocities.begin(), list.velocities.end());
-    state.angular_velocities.insert(state.angular_velocities.end(), list.angular_velocities.begin(), list.angular_velocities.end());
+    state.angular_velocities.insert(state.angular_velocities.end(), list.angular_velocities.begin(),
+                                    list.angular_velocities.end());
 }
 
 std::uint32_t material_index(const Scene& scene, const ParticleGroup& group) {
     for (std::size_t m = 0; m < scene.materials.size(); ++m)
         if (scene.materials[m].name == group.material) return static_cast<std::uint32_t>(m);
-    throw InputError(fmt::format("{}.material: unknown material '{}'", place_of(scene, group), group.material));
+    throw InputError(fmt::format("{} = \"{}\": unknown material", place_of(scene, group, "material"), group.material));
 }
 
 /// Wraps along periodic axes; throws for a particle outside the domain along another.
@@ -55,8 +56,10 @@ void into_domain(const Scene& scene, const ParticleGroup& group, std::size_t fir
             if (x >= box.lower[axis] && x < box.upper[axis]) continue;
             if (!scene.domain.periodic[static_cast<std::size_t>(axis)]) {
                 if (x == box.upper[axis]) continue;
-                throw InputError(fmt::format("{}: particle {} of the group is outside the domain ({} = {} m, domain {} to {} m); enlarge the domain or move the group",
-                                             place_of(scene, group), i - first, "xyz"[axis], x, box.lower[axis], box.upper[axis]));
+                throw InputError(
+                    fmt::format("{}: particle {} of the group is outside the domain ({} = {} m, domain {} to {} m); "
+                                "enlarge the domain or move the group",
+                                place_of(scene, group), i - first, "xyz"[axis], x, box.lower[axis], box.upper[axis]));
             }
             const double period = box.extent()[axis];
             x -= period * std::floor((x - box.lower[axis]) / period);
@@ -72,7 +75,8 @@ void place_group(const Scene& scene, const ParticleGroup& group, InitialState& s
     else if (const auto* file = std::get_if<ParticleFile>(&group.placement)) place_file(scene, group, *file, state);
     else place_fill(scene, group, std::get<RandomFill>(group.placement), state);
     if (state.size() > std::size_t{1} << 31)
-        throw InputError(fmt::format("{}: {} particles are too many; at most 2^31 = 2147483648", place_of(scene, group), state.size()));
+        throw InputError(fmt::format("{}: {} particles are too many; at most 2^31 = 2147483648", place_of(scene, group),
+                                     state.size()));
     state.velocities.resize(state.size(), group.velocity);
     state.angular_velocities.resize(state.size(), group.angular_velocity);
     state.materials.resize(state.size(), material);
@@ -81,8 +85,9 @@ void place_group(const Scene& scene, const ParticleGroup& group, InitialState& s
 
 }  // namespace
 
-std::string place_of(const Scene& scene, const ParticleGroup& group) {
-    return fmt::format("{}: key 'particles.{}'", scene.file.empty() ? "scene" : scene.file.string(), group.name);
+std::string place_of(const Scene& scene, const ParticleGroup& group, const std::string& field) {
+    const std::string file = scene.file.empty() ? "scene" : scene.file.string();
+    return fmt::format("{}: key 'particles.{}{}{}'", file, group.name, field.empty() ? "" : ".", field);
 }
 
 }  // namespace scene

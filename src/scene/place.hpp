@@ -31,7 +31,7 @@ private:
 void place_fill(const Scene&, const ParticleGroup&, const RandomFill&, InitialState&);
 void place_file(const Scene&, const ParticleGroup&, const ParticleFile&, InitialState&);
 
-/// "scene.toml: key 'particles.NAME'", for errors that only placing finds.
-std::string place_of(const Scene&, const ParticleGroup&);
+/// "scene.toml: key 'particles.NAME.field'", for errors that only placing finds.
+std::string place_of(const Scene&, const ParticleGroup&, const std::string& field = "");
 
 }  // namespace grainray::scene

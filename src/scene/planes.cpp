@@ -18,7 +18,8 @@ Plane read_plane(const Node& table, const std::string& name, const Scene& s) {
     plane.normal = unit_vector(table, "normal", plane.normal);
 
     Motion& m = plane.motion;
-    const Node motion = table.child("motion"), rotation = motion.child("rotation"), oscillation = motion.child("oscillation");
+    const Node motion = table.child("motion"), rotation = motion.child("rotation"),
+               oscillation = motion.child("oscillation");
     read_table(motion, schema().motion, m, {"rotation", "oscillation"});
     if (!(m.stop > m.start)) fail_key(motion, "stop", fmt::format("must be greater than start ({} s)", m.start));
     if (motion.has("rotation")) {
@@ -49,7 +50,8 @@ PlaneState plane_at(const Plane& plane, double time) {
 
     PlaneState state{plane.point + shift, plane.normal, {}, {}, m.rotation_point + shift};
     if (m.rotation_rate != 0 && t > 0) {
-        state.point = state.centre + scene::rotated(plane.point - m.rotation_point, m.rotation_axis, m.rotation_rate * t);
+        state.point =
+            state.centre + scene::rotated(plane.point - m.rotation_point, m.rotation_axis, m.rotation_rate * t);
         state.normal = scene::rotated(plane.normal, m.rotation_axis, m.rotation_rate * t);
     }
     if (moving) {

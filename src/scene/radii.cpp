@@ -41,11 +41,15 @@ double RadiusSampler::truncated(std::uint64_t n) const {
     constexpr std::uint64_t most_draws = 4096;
     for (std::uint64_t draw = 0; draw < most_draws; ++draw) {
         const double z = random_.normal(n * most_draws + draw);
-        const double radius = size_.law == SizeLaw::normal ? size_.mean + size_.deviation * z : std::exp(log_mean_ + log_deviation_ * z);
+        const double radius =
+            size_.law == SizeLaw::normal ? size_.mean + size_.deviation * z : std::exp(log_mean_ + log_deviation_ * z);
         if (radius >= size_.minimum && radius <= size_.maximum) return radius;
     }
-    throw InputError(fmt::format("{}: hardly any radius with mean {} m and deviation {} m lies between radius_minimum = {} m and radius_maximum = {} m; "
-                                 "move the cut-offs towards the mean", where_, size_.mean, size_.deviation, size_.minimum, size_.maximum));
+    throw InputError(
+        fmt::format("{}: hardly any radius with mean {} m and deviation {} m lies between radius_minimum = {} m and "
+                    "radius_maximum = {} m; "
+                    "move the cut-offs towards the mean",
+                    where_, size_.mean, size_.deviation, size_.minimum, size_.maximum));
 }
 
 double RadiusSampler::from_table(std::uint64_t n) const {

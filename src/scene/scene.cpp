@@ -3,8 +3,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cerrno>
 #include <cmath>
 #include <fstream>
+#include <iterator>
 #include <set>
 #include <system_error>
 
@@ -18,7 +21,9 @@ void read_simulation(const Node& root, Scene& s) {
     const Node table = root.child("simulation");
     read_table(table, schema().simulation, s);
     if (s.duration / s.dt > 1e15)
-        fail_key(table, "dt", fmt::format("makes {:.3g} steps of {} s; at most 1e15 steps can be counted", s.duration / s.dt, s.duration));
+        fail_key(table, "dt",
+                 fmt::format("makes {:.3g} steps of {} s; at most 1e15 steps can be counted", s.duration / s.dt,
+                             s.duration));
 }
 
 void read_domain(const Node& root, Scene& s) {
@@ -27,16 +32,19 @@ void read_domain(const Node& root, Scene& s) {
     read_table(table, schema().domain, row);
     s.domain.periodic = row.periodic;
     if (row.lower.has_value() != row.upper.has_value())
-        fail_key(table, row.lower ? "lower" : "upper", fmt::format("a box needs both corners; add '{}'", row.lower ? "upper" : "lower"));
+        fail_key(table, row.lower ? "lower" : "upper",
+                 fmt::format("a box needs both corners; add '{}'", row.lower ? "upper" : "lower"));
     if (!row.lower) {
         for (int axis = 0; axis < 3; ++axis)
             if (row.periodic[static_cast<std::size_t>(axis)])
-                fail_key(table, "periodic", fmt::format("axis {} is periodic, so the domain needs 'lower' and 'upper'", "xyz"[axis]));
+                fail_key(table, "periodic",
+                         fmt::format("axis {} is periodic, so the domain needs 'lower' and 'upper'", "xyz"[axis]));
         return;
     }
     for (int axis = 0; axis < 3; ++axis)
         if (!((*row.upper)[axis] > (*row.lower)[axis]))
-            fail_key(table, "upper", fmt::format("must be greater than 'lower' along {} ({} m)", "xyz"[axis], (*row.lower)[axis]));
+            fail_key(table, "upper",
+                     fmt::format("must be greater than 'lower' along {} ({} m)", "xyz"[axis], (*row.lower)[axis]));
     s.domain.box = Box{*row.lower, *row.upper};
 }
 
@@ -55,11 +63,13 @@ void read_render(const Node& root, Scene& s) {
 /// The named tables below `key`, in the order written.
 std::vector<std::pair<std::string, Node>> named_tables(const Node& root, std::string_view key) {
     const Node parent = root.child(key);
-    if (!parent.value->table()) fail(parent, fmt::format("expected tables [{}.NAME], found {}", key, parent.value->type()));
+    if (!parent.value->table())
+        fail(parent, fmt::format("expected tables [{}.NAME], found {}", key, parent.value->type()));
     std::vector<std::pair<std::string, Node>> result;
     for (const Entry& e : *parent.value->table()) {
         const Node node = parent.child(e.key);
-        if (!node.value->table()) fail(node, fmt::format("expected a table [{}.NAME], found {}", key, node.value->type()));
+        if (!node.value->table())
+            fail(node, fmt::format("expected a table [{}.NAME], found {}", key, node.value->type()));
         result.emplace_back(e.key, node);
     }
     return result;
@@ -93,8 +103,8 @@ void read_pairs(const Node& root, Scene& s) {
 
 /// Everything a scene may hold at the top.
 void check_top(const Node& root) {
-    std::vector<std::string_view> known{"simulation", "domain", "contact", "search", "output", "limits", "render",
-                                        "materials", "pairs", "particles", "planes"};
+    std::vector<std::string_view> known{"simulation", "domain",    "contact", "search",    "output", "limits",
+                                        "render",     "materials", "pairs",   "particles", "planes"};
     append_keys(known, schema().top);
     check_keys(root, std::move(known));
 }
@@ -135,9 +145,9 @@ void check_material(const Node& where, const std::string& name, const Scene& s) 
     std::vector<std::string_view> known;
     for (const Material& m : s.materials) known.push_back(m.name);
     if (std::find(known.begin(), known.end(), name) != known.end()) return;
-    const std::string guess = did_you_mean(name, known);
-    if (known.empty()) fail(where, fmt::format("unknown material '{}': the scene has none; add a table [materials.{}]", name, name));
-    fail(where, fmt::format("unknown material '{}'{} Defined: {}", name, guess.empty() ? "." : guess, join(known)));
+    if (known.empty())
+        fail(where, fmt::format("unknown material '{}': the scene has none; add a table [materials.{}]", name, name));
+    fail(where, fmt::format("unknown material '{}'{} Defined: {}", name, did_you_mean(name, known), join(known)));
 }
 
 }  // namespace scene
@@ -155,9 +165,11 @@ Scene parse_scene(const std::string& text, const std::string& name, const std::v
 
 Scene load_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
     std::error_code error;
-    if (std::filesystem::is_directory(file, error)) throw InputError(fmt::format("{}: is a directory; give the scene file in it", file.string()));
+    if (std::filesystem::is_directory(file, error))
+        throw InputError(fmt::format("{}: is a directory; give the scene file in it", file.string()));
     std::ifstream in(file, std::ios::binary);
-    if (!in) throw InputError(fmt::format("{}: cannot be read: {}", file.string(), std::generic_category().message(errno)));
+    if (!in)
+        throw InputError(fmt::format("{}: cannot be read: {}", file.string(), std::generic_category().message(errno)));
     const std::string text{std::istreambuf_iterator<char>(in), {}};
     return parse_scene(text, file.string(), overrides);
 }

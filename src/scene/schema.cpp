@@ -45,7 +45,7 @@ void add_output_tables(Schema& s) {
         field(&OutputSettings::frames, {.key = "frames", .text = "time between frames; 0: the first and the last state only", .unit = unit::time, .range = non_negative, .typical = "0.1 s"}),
         field(&OutputSettings::history, {.key = "history", .text = "time between rows of history.csv; 0: as frames", .unit = unit::time, .range = non_negative, .typical = "0.01 s"}),
         field(&OutputSettings::checkpoints, {.key = "checkpoints", .text = "time between checkpoints; 0: as frames", .unit = unit::time, .range = non_negative, .typical = "1 s"}),
-        field(&OutputSettings::format, {.key = "format", .text = "file format of frames", .choices = {"vtp", "csv"}}),
+        field(&OutputSettings::format, {.key = "format", .text = "file format of frames", .choices = {"vtp", "zlib.vtp", "csv"}}),
         field(&OutputSettings::fields, {.key = "fields", .text = "what frames hold besides positions; []: everything", .choices = frame_field_names})}};
     s.limits = {"limits", "Past these the run stops, because the result would be wrong.", {
         field(&Limits::overlap, {.key = "overlap", .text = "largest overlap over the smaller radius", .range = positive, .typical = "1.9"}),

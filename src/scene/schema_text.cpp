@@ -13,7 +13,7 @@ using Line = std::array<std::string, 5>;
 
 std::string meaning(const FieldInfo& f) {
     std::string out(f.text);
-    if (!f.choices.empty()) out += ": " + join(f.choices);
+    if (!f.choices.empty()) out += "; one of " + join(f.choices);
     const std::string range = f.range.text({});
     if (!range.empty()) out += "; " + range;
     if (!f.typical.empty()) out += fmt::format("; typical {}", f.typical);
@@ -21,7 +21,8 @@ std::string meaning(const FieldInfo& f) {
 }
 
 Line line_of(const FieldInfo& f) {
-    return {fmt::format("`{}`", f.key), f.type, std::string(f.unit.symbol), f.required ? "required" : f.fallback, meaning(f)};
+    return {fmt::format("`{}`", f.key), f.type, std::string(f.unit.symbol), f.required ? "required" : f.fallback,
+            meaning(f)};
 }
 
 /// A Markdown table whose columns line up, so that it reads well in a terminal too.
@@ -51,10 +52,12 @@ std::string schema_text() {
         for (const scene::FieldInfo& f : section.fields) lines.push_back(scene::line_of(f));
         const bool header = section.name.front() != '(' && section.name.front() != '[';
         const auto comma = std::min(section.name.find(','), section.name.size());
-        const std::string title = header ? fmt::format("[{}]{}", section.name.substr(0, comma), section.name.substr(comma)) : std::string(section.name);
+        const std::string title = header
+                                      ? fmt::format("[{}]{}", section.name.substr(0, comma), section.name.substr(comma))
+                                      : std::string(section.name);
         out += fmt::format("{}### {}\n", out.empty() ? "" : "\n", title);
         if (!section.text.empty()) out += fmt::format("{}\n", section.text);
-        out += "\n" + scene::table_text(lines);
+        out.append("\n").append(scene::table_text(lines));
     });
     return out;
 }

@@ -49,7 +49,9 @@ void SphereGrid::insert(const Vec3d& centre, double radius) {
     std::array<std::int64_t, 3> c;
     for (int axis = 0; axis < 3; ++axis) {
         const auto a = static_cast<std::size_t>(axis);
-        c[a] = std::clamp<std::int64_t>(static_cast<std::int64_t>(std::floor((centre[axis] - box_.lower[axis]) / level.cell[axis])), 0, level.cells[a] - 1);
+        c[a] = std::clamp<std::int64_t>(
+            static_cast<std::int64_t>(std::floor((centre[axis] - box_.lower[axis]) / level.cell[axis])), 0,
+            level.cells[a] - 1);
     }
     std::int64_t& head = first_[bucket(index, c[0], c[1], c[2])];
     spheres_.push_back({centre, radius, head});
@@ -82,7 +84,9 @@ bool SphereGrid::level_overlaps(std::size_t index, const Vec3d& centre, double r
     for (std::int64_t z = lower[2]; z <= upper[2]; ++z)
         for (std::int64_t y = lower[1]; y <= upper[1]; ++y)
             for (std::int64_t x = lower[0]; x <= upper[0]; ++x)
-                if (bucket_overlaps(bucket(index, wrapped(x, level.cells[0]), wrapped(y, level.cells[1]), wrapped(z, level.cells[2])), centre, radius))
+                if (bucket_overlaps(bucket(index, wrapped(x, level.cells[0]), wrapped(y, level.cells[1]),
+                                           wrapped(z, level.cells[2])),
+                                    centre, radius))
                     return true;
     return false;
 }

@@ -27,7 +27,7 @@ private:
     struct Level {
         double reach;  ///< no sphere of the level is larger
         std::array<std::int64_t, 3> cells;
-        Vec3d cell;    ///< edges
+        Vec3d cell;  ///< edges
     };
     Level make_level(std::size_t index) const;
     std::size_t level_of(double radius) const;

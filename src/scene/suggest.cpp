@@ -30,16 +30,20 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 }  // namespace
 
 std::string did_you_mean(std::string_view word, const std::vector<std::string_view>& known) {
-    if (word.size() > 64) return "";
+    if (word.size() > 64) return ".";
     std::string_view best;
     std::size_t least = std::max<std::size_t>(2, word.size() / 3) + 1;
     for (const auto candidate : known) {
         const std::size_t distance = edit_distance(word, candidate);
         if (distance < least && distance < candidate.size()) least = distance, best = candidate;
     }
-    return best.empty() ? "" : fmt::format("; did you mean '{}'?", best);
+    return best.empty() ? "." : fmt::format("; did you mean '{}'?", best);
 }
 
-std::string join(const std::vector<std::string_view>& words) { return fmt::format("{}", fmt::join(words, ", ")); }
+std::string join(const std::vector<std::string_view>& words) {
+    std::string out;
+    for (const auto word : words) out.append(out.empty() ? "" : ", ").append(word);
+    return out;
+}
 
 }  // namespace grainray::scene

@@ -7,7 +7,7 @@
 
 namespace grainray::scene {
 
-/// "; did you mean 'x'?" for the nearest of `known`, or "" where none is near.
+/// End of a sentence: "; did you mean 'x'?" for the nearest of `known`, or "." where none is near.
 std::string did_you_mean(std::string_view word, const std::vector<std::string_view>& known);
 /// "a, b, c"
 std::string join(const std::vector<std::string_view>& words);

@@ -21,7 +21,8 @@ Place place_of(const toml::source_region& where, const Origin& origin, bool loca
 Table convert_table(const toml::table& table, const Origin& origin, bool located) {
     Table result;
     for (auto&& [key, node] : table)
-        result.push_back({std::string(key.str()), place_of(key.source(), origin, located), convert(node, origin, located)});
+        result.push_back(
+            {std::string(key.str()), place_of(key.source(), origin, located), convert(node, origin, located)});
     std::stable_sort(result.begin(), result.end(), [](const Entry& a, const Entry& b) {
         return std::tie(a.place.line, a.place.column) < std::tie(b.place.line, b.place.column);
     });
@@ -45,7 +46,7 @@ void append_text(std::string& out, const Value& value) {
         }
         out += ']';
     } else if (const auto* text = std::get_if<std::string>(&value.data)) {
-        out += '"' + *text + '"';
+        out.append("\"").append(*text).append("\"");
     } else if (const auto* number = std::get_if<double>(&value.data)) {
         out += fmt::format("{}", *number);
     } else if (const auto* integer = std::get_if<std::int64_t>(&value.data)) {
@@ -83,7 +84,8 @@ const Value* Value::find(std::string_view key) const {
 }
 
 std::string Value::type() const {
-    static const char* const names[] = {"a table", "an array", "a string", "a number", "an integer", "true or false", "a date"};
+    static const char* const names[] = {"a table",    "an array",      "a string", "a number",
+                                        "an integer", "true or false", "a date"};
     return names[data.index()];
 }
 
@@ -119,7 +121,8 @@ Value parse_document(const std::string& text, const std::string& name) {
         document.place = {origin, 1, 1};
         return document;
     } catch (const toml::parse_error& e) {
-        throw InputError(fmt::format("{}: not valid TOML: {}", place_of(e.source(), origin, true).text(), e.description()));
+        throw InputError(
+            fmt::format("{}: not valid TOML: {}", place_of(e.source(), origin, true).text(), e.description()));
     }
 }
 

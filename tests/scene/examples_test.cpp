@@ -1,4 +1,5 @@
 // Every file of examples/ loads, and the published numbers are in them.
+#include <algorithm>
 #include <filesystem>
 
 #include "scene_text.hpp"
@@ -16,7 +17,9 @@ std::vector<std::string> example_names() {
     return names;
 }
 
-Scene example(const std::string& name, const std::vector<std::string>& overrides = {}) { return load_scene(folder / (name + ".toml"), overrides); }
+Scene example(const std::string& name, const std::vector<std::string>& overrides = {}) {
+    return load_scene(folder / (name + ".toml"), overrides);
+}
 
 class Examples : public testing::TestWithParam<std::string> {};
 
@@ -27,10 +30,12 @@ TEST_P(Examples, LoadAndPlaceParticlesOnTheRightSideOfEveryPlane) {
     EXPECT_GT(s.size(), 0u);
     for (const Plane& plane : scene.planes)
         for (std::size_t i = 0; i < s.size(); ++i)
-            ASSERT_GE(dot(plane.normal, s.positions[i] - plane.point), s.radii[i] * (1 - 1e-9)) << plane.name << ", particle " << i;
+            ASSERT_GE(dot(plane.normal, s.positions[i] - plane.point), s.radii[i] * (1 - 1e-9))
+                << plane.name << ", particle " << i;
 }
 
-INSTANTIATE_TEST_SUITE_P(All, Examples, testing::ValuesIn(example_names()), [](const auto& info) { return info.param; });
+INSTANTIATE_TEST_SUITE_P(All, Examples, testing::ValuesIn(example_names()),
+                         [](const auto& example) { return example.param; });
 
 TEST(ColumnExample, StableReading) {
     const Scene s = example("column_collapse");
@@ -63,7 +68,8 @@ TEST(ColumnExample, LiteralReading) {
 }
 
 TEST(ColumnExample, PublishedSizeByOverrides) {
-    const Scene s = example("packing", {"particles.column.count=[71,80,141]", "planes.side_far.point=[0,19.2,0]", "planes.front.point=[17.04,0,0]"});
+    const Scene s = example("packing", {"particles.column.count=[71,80,141]", "planes.side_far.point=[0,19.2,0]",
+                                        "planes.front.point=[17.04,0,0]"});
     const InitialState p = place_particles(s);
     EXPECT_EQ(p.size(), 800880u);
     for (const Vec3d& x : p.positions) ASSERT_TRUE(x.x + 0.1 < 17.04 && x.y + 0.1 < 19.2);

@@ -190,7 +190,8 @@ TEST(ContactParameters, SeriesRuleMixesWallsToo) {
 }
 
 TEST(ContactParameters, APairRowReplacesOnlyWhatItGives) {
-    const Scene s = parse(two_materials + "[[pairs]]\nmaterials = [\"wall\", \"grain\"]\nfriction = 0\nnormal_stiffness = \"3 kN/m\"\n");
+    const Scene s = parse(
+        two_materials + "[[pairs]]\nmaterials = [\"wall\", \"grain\"]\nfriction = 0\nnormal_stiffness = \"3 kN/m\"\n");
     for (const bool boundary : {true, false}) {
         const MaterialPair pair = contact_parameters(s, 0, 1, boundary);
         EXPECT_EQ(pair.friction, 0);
@@ -203,7 +204,8 @@ TEST(ContactParameters, APairRowReplacesOnlyWhatItGives) {
 
 /// docs/scene.md holds schema_text() between two marks; GRAINRAY_UPDATE_DOCS=1 writes it there.
 TEST(Schema, DocsHoldTheFieldTable) {
-    const std::string path = GRAINRAY_SOURCE_DIR "/docs/scene.md", begin = "<!-- fields -->\n", end = "<!-- end of fields -->";
+    const std::string path = GRAINRAY_SOURCE_DIR "/docs/scene.md", begin = "<!-- fields -->\n",
+                      end = "<!-- end of fields -->";
     std::ifstream in(path);
     std::string page{std::istreambuf_iterator<char>(in), {}};
     const auto from = page.find(begin), to = page.find(end);
@@ -211,8 +213,7 @@ TEST(Schema, DocsHoldTheFieldTable) {
     const std::string table = page.substr(from + begin.size(), to - from - begin.size());
     if (std::getenv("GRAINRAY_UPDATE_DOCS") && table != schema_text())
         std::ofstream(path) << page.replace(from + begin.size(), table.size(), schema_text());
-    else
-        EXPECT_EQ(table, schema_text()) << "run this test with GRAINRAY_UPDATE_DOCS=1";
+    else EXPECT_EQ(table, schema_text()) << "run this test with GRAINRAY_UPDATE_DOCS=1";
 }
 
 }  // namespace

@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cmath>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -45,7 +48,8 @@ inline double smallest_gap(const InitialState& s, const Box* box = nullptr, std:
         for (std::size_t j = 0; j < i; ++j) {
             Vec3d d = s.positions[i] - s.positions[j];
             for (int axis = 0; axis < 3; ++axis)
-                if (box && periodic[static_cast<std::size_t>(axis)]) d[axis] -= box->extent()[axis] * std::round(d[axis] / box->extent()[axis]);
+                if (box && periodic[static_cast<std::size_t>(axis)])
+                    d[axis] -= box->extent()[axis] * std::round(d[axis] / box->extent()[axis]);
             gap = std::min(gap, length(d) - s.radii[i] - s.radii[j]);
         }
     return gap;

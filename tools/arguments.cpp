@@ -1,0 +1,132 @@
+#include "arguments.hpp"
+
+#include <charconv>
+#include <cmath>
+#include <string_view>
+
+#include <fmt/format.h>
+
+#include "scene/suggest.hpp"
+
+namespace grainray::cli {
+namespace {
+
+/// The whole of text as a T, or false.
+template <class T>
+bool parse_number(std::string_view text, T& value) {
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    return error == std::errc() && end == text.data() + text.size();
+}
+
+std::vector<std::string_view> split(std::string_view text, char separator) {
+    std::vector<std::string_view> parts;
+    for (std::size_t end; (end = text.find(separator)) != std::string_view::npos; text.remove_prefix(end + 1))
+        parts.push_back(text.substr(0, end));
+    parts.push_back(text);
+    return parts;
+}
+
+/// The subcommand the user got to: `grainray bench step` rather than `grainray`.
+const CLI::App& deepest(const CLI::App& app) {
+    for (const CLI::App* sub : app.get_subcommands()) return deepest(*sub);
+    return app;
+}
+
+std::vector<std::string> option_names(const CLI::App& app) {
+    std::vector<std::string> names;
+    for (const CLI::Option* option : app.get_options())
+        for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+    return names;
+}
+
+std::vector<std::string> command_names(const CLI::App& app) {
+    std::vector<std::string> names;
+    for (const CLI::App* sub : app.get_subcommands([](const CLI::App*) { return true; })) names.push_back(sub->get_name());
+    return names;
+}
+
+std::string nearest(std::string_view word, const std::vector<std::string>& known) {
+    return scene::did_you_mean(word, {known.begin(), known.end()});
+}
+
+std::string one_line(std::string text) {
+    for (char& c : text)
+        if (c == '\n') c = ' ';
+    while (!text.empty() && (text.back() == ' ' || text.back() == '.')) text.pop_back();
+    return text;
+}
+
+}  // namespace
+
+Vec3d parse_vector(const std::string& option, const std::string& text) {
+    const auto parts = split(text, ',');
+    Vec3d v;
+    bool good = parts.size() == 3;
+    for (int a = 0; good && a < 3; ++a) good = parse_number(parts[static_cast<std::size_t>(a)], v[a]) && std::isfinite(v[a]);
+    if (!good) throw InputError(fmt::format("{}: '{}' is not three numbers x,y,z; write for example {} 5,-10,3", option, text, option));
+    return v;
+}
+
+PixelSize parse_size(const std::string& option, const std::string& text) {
+    const auto parts = split(text, 'x');
+    PixelSize size{};
+    const bool good = parts.size() == 2 && parse_number(parts[0], size.width) && parse_number(parts[1], size.height) &&
+                      size.width >= 1 && size.height >= 1 && size.width <= 16384 && size.height <= 16384;
+    if (!good) throw InputError(fmt::format("{}: '{}' is not a size of 1 to 16384 pixels each way; write for example {} 1920x1080", option, text, option));
+    return size;
+}
+
+void require_choice(const std::string& option, const std::string& value, const std::vector<std::string>& known) {
+    for (const std::string& name : known)
+        if (value == name) return;
+    throw InputError(fmt::format("{}: '{}' is not known{} Known: {}", option, value, nearest(value, known), scene::join({known.begin(), known.end()})));
+}
+
+void require_at_least(const std::string& option, std::int64_t value, std::int64_t least) {
+    if (value < least) throw InputError(fmt::format("{}: {} is too small; give {} or more", option, value, least));
+}
+
+void add_overrides(CLI::App& app, std::vector<std::string>& overrides) {
+    app.add_option("--set", overrides, "Change a key of the scene, as often as needed: --set materials.grain.friction=0.3")
+        ->type_name("KEY=VALUE")->allow_extra_args(false);
+}
+
+std::string parse_mistake(const CLI::App& app, const CLI::ParseError& error) {
+    const CLI::App& at = deepest(app);
+    const std::string help = fmt::format("see {} --help", &at == &app ? app.get_name() : app.get_name() + " " + at.get_display_name());
+    std::vector<std::string> extras = app.remaining(true);
+    std::string_view first;
+    for (const std::string& word : extras)
+        if (word.starts_with('-') && word != "--") {
+            const std::string name = word.substr(0, word.find('='));
+            return fmt::format("unknown option '{}'{} For all options {}", name, nearest(name, option_names(at)), help);
+        } else if (first.empty()) first = word;
+    if (first.empty()) return fmt::format("{}; {}", one_line(error.what()), help);
+    if (!at.get_subcommands([](const CLI::App*) { return true; }).empty())
+        return fmt::format("unknown command '{}'{} For all commands {}", first, nearest(first, command_names(at)), help);
+    return fmt::format("unexpected argument '{}'; {}", first, help);
+}
+
+std::string short_number(double value) {
+    if (!std::isfinite(value)) return "-";
+    for (const auto& [size, suffix] : {std::pair{1e9, " G"}, {1e6, " M"}, {1e3, " k"}})
+        if (std::fabs(value) >= size) return fmt::format("{:.3g}{}", value / size, suffix);
+    return fmt::format("{:.3g}", value);
+}
+
+std::string duration_text(double seconds) {
+    if (!std::isfinite(seconds)) return "-";
+    if (seconds < 99.5) return fmt::format("{:.3g} s", seconds);
+    const auto whole = static_cast<long long>(seconds + 0.5);
+    if (whole < 3600) return fmt::format("{} min {} s", whole / 60, whole % 60);
+    if (whole < 100 * 3600) return fmt::format("{} h {} min", whole / 3600, whole / 60 % 60);
+    return fmt::format("{:.3g} days", seconds / 86400);
+}
+
+std::string bytes_text(double bytes) {
+    if (bytes >= 1024.0 * 1024 * 1024) return fmt::format("{:.3g} GiB", bytes / (1024.0 * 1024 * 1024));
+    if (bytes >= 1024.0 * 1024) return fmt::format("{:.3g} MiB", bytes / (1024.0 * 1024));
+    return fmt::format("{:.3g} KiB", bytes / 1024);
+}
+
+}  // namespace grainray::cli

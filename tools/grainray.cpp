@@ -1,0 +1,81 @@
+// The command line: reads it, runs the subcommand, turns every error into one line and an exit status.
+#include <csignal>
+#include <cstdio>
+#include <new>
+
+#include <fmt/format.h>
+
+#include "arguments.hpp"
+#include "commands.hpp"
+#include "grainray/core.hpp"
+
+namespace grainray::cli {
+namespace {
+
+int report(std::string message, int status) {
+    for (char& c : message)
+        if (c == '\n') c = ' ';
+    fmt::print(stderr, "grainray: {}\n", message);
+    return status;
+}
+
+#ifdef GRAINRAY_HAS_VALIDATE
+void add_validate(CLI::App& app, Action& chosen) {
+    struct Options {
+        std::vector<std::string> only;
+        bool quick = false;
+    };
+    CLI::App* command = app.add_subcommand("validate", "Run analytic and published cases: expected, got, tolerance, pass");
+    const auto options = std::make_shared<Options>();
+    command->add_option("CASE", options->only, "Only these cases; none: all");
+    command->add_flag("--quick", options->quick, "Leave out the cases that take long");
+    command->footer("Example: grainray validate --quick");
+    command->callback([options, &chosen] { chosen = [options] { return run_validate(options->only, options->quick); }; });
+}
+#endif
+
+void add_commands(CLI::App& app, Action& chosen) {
+    app.set_version_flag("--version", "grainray " GRAINRAY_VERSION);
+    app.footer("Start with: grainray check examples/column_collapse.toml\n"
+               "then:       grainray run examples/column_collapse.toml --out column\n"
+               "Exit status: 0 done; 1 the simulation failed; 2 the input is wrong; 130 interrupted, state saved.");
+    add_run(app, chosen);
+    add_check(app, chosen);
+    add_info(app, chosen);
+    add_render(app, chosen);
+    add_bench(app, chosen);
+#ifdef GRAINRAY_HAS_VALIDATE
+    add_validate(app, chosen);
+#endif
+}
+
+int parse_and_run(int argc, char** argv) {
+    CLI::App app("grainray: granular material, grain by grain", "grainray");
+    Action chosen;
+    add_commands(app, chosen);
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::ParseError& e) {
+        if (e.get_exit_code() == 0) return app.exit(e);  // --help, --version
+        return report(parse_mistake(app, e), input_wrong);
+    }
+    if (!chosen) return report("no command given; see grainray --help", input_wrong);
+    return chosen();
+}
+
+}  // namespace
+}  // namespace grainray::cli
+
+int main(int argc, char** argv) {
+    using namespace grainray;
+    std::signal(SIGXFSZ, SIG_IGN);  // a file size limit is then an error of write(), which we explain
+    try {
+        return cli::parse_and_run(argc, argv);
+    } catch (const InputError& e) {
+        return cli::report(e.what(), cli::input_wrong);
+    } catch (const std::bad_alloc&) {
+        return cli::report("out of memory; use fewer particles or a machine with more memory", cli::simulation_failed);
+    } catch (const std::exception& e) {
+        return cli::report(e.what(), cli::simulation_failed);
+    }
+}

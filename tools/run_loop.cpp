@@ -1,0 +1,143 @@
+#include "run_loop.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include <fmt/format.h>
+
+namespace grainray::cli {
+namespace {
+
+constexpr std::uint64_t health_interval = 1000;  // steps between two looks at the state, at most
+constexpr double batch_seconds = 0.1;            // so long a signal or the progress line may wait
+constexpr std::uint64_t default_checkpoints = 20;
+
+using clock = std::chrono::steady_clock;
+
+double seconds_since(clock::time_point start) { return std::chrono::duration<double>(clock::now() - start).count(); }
+
+bool due(std::uint64_t step, std::uint64_t every) { return every != 0 && step % every == 0; }
+
+std::uint64_t next_multiple(std::uint64_t step, std::uint64_t every) { return every == 0 ? UINT64_MAX : (step / every + 1) * every; }
+
+std::uint64_t whole_steps(double interval, double dt) {
+    if (!(interval > 0)) return 0;
+    const double steps = std::min(interval / dt, 1e18);
+    return std::max<std::uint64_t>(1, static_cast<std::uint64_t>(std::llround(steps)));
+}
+
+const std::vector<std::string> history_columns{
+    "time",       "kinetic_translation", "kinetic_rotation",  "potential",    "momentum_x", "momentum_y",
+    "momentum_z", "max_overlap_ratio",   "coordination",      "mean_neighbors", "front_99", "max_speed",
+    "angular_momentum_x", "angular_momentum_y", "angular_momentum_z", "contacts", "particles", "step"};
+
+std::vector<double> history_row(const Statistics& s, std::size_t particles) {
+    return {s.time,       s.kinetic_translation, s.kinetic_rotation, s.potential,      s.momentum.x, s.momentum.y,
+            s.momentum.z, s.max_overlap_ratio,   s.coordination,     s.mean_neighbors, s.front_99,   s.max_speed,
+            s.angular_momentum.x, s.angular_momentum.y, s.angular_momentum.z, static_cast<double>(s.contacts),
+            static_cast<double>(particles), static_cast<double>(s.step)};
+}
+
+}  // namespace
+
+/// Frame k is the state after k intervals; a last state between two of them takes the next number.
+std::uint64_t RunPlan::frame_index(std::uint64_t step) const {
+    if (frames == 0) return step == 0 ? 0 : 1;
+    return (step + frames - 1) / frames;
+}
+
+RunPlan plan_run(const Scene& scene, std::uint64_t first, std::uint64_t last, bool appends) {
+    const OutputSettings& o = scene.output;
+    RunPlan plan{first, last, whole_steps(o.frames, scene.dt), 0, 0, appends, false};
+    plan.history = o.history > 0 ? whole_steps(o.history, scene.dt) : plan.frames;
+    plan.checkpoints = o.checkpoints > 0 ? whole_steps(o.checkpoints, scene.dt) : plan.frames;
+    if (plan.checkpoints == 0) plan.checkpoints = std::max<std::uint64_t>(1, (last - first) / default_checkpoints);
+    return plan;
+}
+
+RunLoop::RunLoop(Simulation& simulation, const Scene& scene, const RunFolder& folder, const RunPlan& plan, bool quiet)
+    : simulation_(simulation), scene_(scene), folder_(folder), plan_(plan), progress_(quiet, plan.first, plan.last),
+      history_(folder.history(), history_columns, plan.appends, simulation.time()), has_checkpoint_(plan.has_checkpoint),
+      checkpoint_step_(plan.first) {}
+
+bool RunLoop::run() {
+    if (!plan_.appends) write_first();
+    else folder_.remove_frames_after(plan_.frames ? plan_.first / plan_.frames : 0);
+    while (simulation_.step_count() < plan_.last && !signals_.asked()) {
+        advance(next_stop());
+        write_due();
+        progress_.update(simulation_);
+    }
+    progress_.clear();
+    if (simulation_.step_count() == plan_.last) return true;
+    simulation_.check_health();
+    write_checkpoint_now();
+    return false;
+}
+
+std::uint64_t RunLoop::next_stop() const {
+    const std::uint64_t now = simulation_.step_count();
+    return std::min({plan_.last, next_multiple(now, plan_.frames), next_multiple(now, plan_.history), next_multiple(now, plan_.checkpoints),
+                     next_multiple(now, health_interval)});
+}
+
+/// Steps towards `limit`, for about batch_seconds.
+void RunLoop::advance(std::uint64_t limit) {
+    const std::uint64_t left = limit - simulation_.step_count();
+    std::uint64_t batch = 1;
+    if (seconds_per_step_ > 0) batch = static_cast<std::uint64_t>(std::clamp(batch_seconds / seconds_per_step_, 1.0, static_cast<double>(left)));
+    batch = std::min(batch, left);
+    const auto start = clock::now();
+    try {
+        simulation_.run(batch);
+    } catch (const InputError& e) {  // a search that meets a position that is no number
+        simulation_.check_health();
+        throw SimulationError(fmt::format("the simulation broke at step {}: {}", simulation_.step_count(), e.what()));
+    }
+    const double seconds = seconds_since(start) / static_cast<double>(batch);
+    seconds_per_step_ = seconds_per_step_ > 0 ? 0.5 * (seconds_per_step_ + seconds) : seconds;
+}
+
+void RunLoop::write_first() {
+    const auto start = clock::now();
+    write_frame();
+    write_history();
+    write_checkpoint_now();
+    simulation_.profile().output += seconds_since(start);
+}
+
+/// The checkpoint comes last: what it stands for has been written when it appears.
+void RunLoop::write_due() {
+    const std::uint64_t step = simulation_.step_count();
+    const bool end = step == plan_.last, frame = end || due(step, plan_.frames), history = end || due(step, plan_.history),
+               checkpoint = end || due(step, plan_.checkpoints);
+    if (!frame && !history && !checkpoint && !due(step, health_interval)) return;
+    const auto start = clock::now();
+    simulation_.check_health();
+    if (frame) write_frame();
+    if (history) write_history();
+    if (checkpoint) write_checkpoint_now();
+    simulation_.profile().output += seconds_since(start);
+}
+
+void RunLoop::write_frame() {
+    writer_for(scene_.output.format).write(folder_.frame(plan_.frame_index(simulation_.step_count())), simulation_.frame(), scene_.output.fields);
+}
+
+void RunLoop::write_history() { history_.row(history_row(simulation_.statistics(), simulation_.size())); }
+
+void RunLoop::write_checkpoint_now() {
+    if (has_checkpoint_ && checkpoint_step_ == simulation_.step_count()) return;
+    write_checkpoint(folder_.checkpoint(), simulation_.checkpoint());
+    has_checkpoint_ = true;
+    checkpoint_step_ = simulation_.step_count();
+}
+
+std::string RunLoop::last_checkpoint() const {
+    if (!has_checkpoint_) return "no checkpoint was written";
+    return fmt::format("the last good checkpoint is {} (step {}, t = {:.6g} s)", folder_.checkpoint().string(), checkpoint_step_,
+                       static_cast<double>(checkpoint_step_) * scene_.dt);
+}
+
+}  // namespace grainray::cli

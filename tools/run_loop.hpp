@@ -1,0 +1,56 @@
+// Steps and outputs of a run, in batches that end where something is to be written.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+
+#include "grainray/output.hpp"
+#include "grainray/simulation.hpp"
+#include "progress.hpp"
+#include "run_folder.hpp"
+#include "signals.hpp"
+
+namespace grainray::cli {
+
+/// All in steps. An interval of 0: never, but for the first and the last state.
+struct RunPlan {
+    std::uint64_t first = 0, last = 0;
+    std::uint64_t frames = 0, history = 0, checkpoints = 0;
+    bool appends = false;  ///< goes on in the folder of its checkpoint: the first state is there already
+    bool has_checkpoint = false;  ///< the folder's checkpoint is the first state
+    std::uint64_t frame_index(std::uint64_t step) const;
+};
+/// Intervals of the scene in whole steps.
+RunPlan plan_run(const Scene&, std::uint64_t first, std::uint64_t last, bool appends);
+
+class RunLoop {
+public:
+    RunLoop(Simulation&, const Scene&, const RunFolder&, const RunPlan&, bool quiet);
+    /// False where a signal stopped it; its state is then in the checkpoint. Throws SimulationError.
+    bool run();
+    Progress& progress() { return progress_; }
+    /// "the last good checkpoint is FILE (step N, t = T s)", or that there is none.
+    std::string last_checkpoint() const;
+
+private:
+    void write_first();
+    void write_due();
+    void write_frame();
+    void write_history();
+    void write_checkpoint_now();
+    std::uint64_t next_stop() const;
+    void advance(std::uint64_t limit);
+
+    Simulation& simulation_;
+    const Scene& scene_;
+    const RunFolder& folder_;
+    RunPlan plan_;
+    StopSignals signals_;
+    Progress progress_;
+    HistoryFile history_;
+    double seconds_per_step_ = 0;
+    bool has_checkpoint_ = false;
+    std::uint64_t checkpoint_step_ = 0;
+};
+
+}  // namespace grainray::cli
