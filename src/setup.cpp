@@ -150,7 +150,7 @@ Simulation::Simulation(const Scene& scene, const InitialState& initial, const Si
     p.far.assign(far);
     p.body.assign(body);
     p.id.assign(id);
-    impl_->place_planes();
+    impl_->prepare();
 }
 
 namespace {
@@ -215,7 +215,7 @@ Simulation::Simulation(const Scene& scene, const Checkpoint& c, const Simulation
     OldLists(n, places(c.contact_a), places(c.contact_b), c.contact_history).store(impl_->state.grains);
     OldLists(n, places(c.wall_particle), c.wall_plane, c.wall_history).store(impl_->state.walls);
     impl_->step_number = c.step;
-    impl_->place_planes();
+    impl_->prepare();
 }
 
 Simulation::~Simulation() = default;

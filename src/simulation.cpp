@@ -46,6 +46,11 @@ void Simulation::Impl::step() {
     if (planes_move) place_planes();
 }
 
+void Simulation::Impl::prepare() {
+    place_planes();
+    if (state.size()) threads.run([&] { update_lists(); });
+}
+
 /// Sort, margins, search, then the histories of the old lists into the new ones.
 void Simulation::Impl::update_lists() {
     stage.sort(state, old_index);

@@ -32,6 +32,7 @@ struct Simulation::Impl {
 
     Impl(const Scene&, const SimulationOptions&, const PositionScale&, const InitialState& sizes);
 
+    void prepare();                          ///< planes and first lists, so that observers see contacts before any step
     void step();
     void update_lists();
     void place_planes();                     ///< where they are at time()

@@ -20,7 +20,7 @@ using clock = std::chrono::steady_clock;
 struct Options {
     fs::path scene, out, restart;
     EngineOptions engine;
-    std::int64_t steps = -1;  ///< -1: to the end of the scene
+    std::optional<std::int64_t> steps;  ///< none: to the end of the scene
     bool force = false, quiet = false;
 };
 
@@ -45,7 +45,7 @@ void require_fit(const Scene& scene, const InitialState& particles, const Checkp
 
 std::string restart_command(const Options& options, const RunFolder& folder, const Simulation& simulation, std::uint64_t last) {
     std::string command = fmt::format("grainray run {} --restart {} --out {}", folder.scene().string(), folder.checkpoint().string(), folder.path().string());
-    if (options.steps >= 0) command += fmt::format(" --steps {}", last - simulation.step_count());
+    if (options.steps) command += fmt::format(" --steps {}", last - simulation.step_count());
     return command;
 }
 
@@ -62,9 +62,10 @@ public:
         folder_.check(options_.force, goes_on_);
         Simulation simulation = make_simulation();
         const std::uint64_t first = simulation.step_count();
-        const std::uint64_t asked = options_.steps >= 0 ? first + static_cast<std::uint64_t>(options_.steps) : scene_.steps();
+        const std::uint64_t asked = options_.steps ? first + static_cast<std::uint64_t>(*options_.steps) : scene_.steps();
         RunPlan plan = plan_run(scene_, first, std::max(first, asked), goes_on_);
-        plan.has_checkpoint = goes_on_ && fs::equivalent(options_.restart, folder_.checkpoint());
+        std::error_code ignored;
+        plan.has_checkpoint = goes_on_ && fs::equivalent(options_.restart, folder_.checkpoint(), ignored);
         facts_.first_step = first;
         facts_.threads = ThreadLimit::count();
         facts_.device_reason = engine_.device_reason;
@@ -152,7 +153,7 @@ private:
 };
 
 int run(const Options& options) {
-    if (options.steps != -1) require_at_least("--steps", options.steps, 0);
+    if (options.steps) require_at_least("--steps", *options.steps, 0);
     return Run(options).run();
 }
 

@@ -51,6 +51,8 @@ Device choose_search_device(const std::string& device) {
     return device == "cpu" || !cuda_available() ? Device::cpu : Device::cuda;
 }
 
+std::string gpu_runs_status() { return gpu_runs_complete ? "on cpu and cuda" : fmt::format("on cpu: {}", gpu_runs_missing); }
+
 Engine choose_engine(const EngineOptions& asked, const Scene& scene) {
     require_device_name(asked.device);
     Engine engine;

@@ -1,10 +1,12 @@
 // Stage: margins. How far each particle may move before the list must be made again, and the points for the search.
 //
-// The world is cut into boxes at least as wide as any pair's reach. The mean velocity U around a box is the frame of the
-// particles in it: motion that the surroundings share is no displacement. The list holds while
-//   every particle's displacement, less U t, is below its own margin m_i (src/dynamics/integrate.cpp checks each step), and
-//   t is below the list's limit, for which the shear between boxes is covered: particles of boxes c and c' drift apart by
-//   |U_c - U_c'| t, and reach r_i + m_i + e_c with e_c = 1/2 t max |U_c - U_c'| over the boxes around covers it.
+// The world is cut into boxes 8 largest radii wide. The mean velocity U around a box is the frame of the particles in it:
+// motion that the surroundings share is no displacement. A list made for t steps holds while every particle's displacement,
+// less U t, is below its own margin m_i <= r_max (src/dynamics/integrate.cpp checks each step), because a pair drifts apart or
+// together by at most m_i + m_j + |U_i - U_j| t, and
+//   in one box or two that touch, the reach r_i + m_i + e_c, e_c = t/2 max |U_c - U_c'| over the boxes around, covers it;
+//   with one box between, 8 r_max lie between: t |U_c - U_c'| <= 4 r_max keeps them apart;
+//   farther away, 16 r_max do: t times the spread of all frames <= 12 r_max keeps them apart.
 // So coherent motion is free, and a lone runaway has a wide margin that nobody else pays for.
 #include "exec/exec.hpp"
 #include "neighbors/cells/grid.hpp"
@@ -21,7 +23,8 @@ struct Sums {
 struct Surroundings {
     Vec3f frame;
     float spread;  ///< standard deviation of the velocity
-    float shear;   ///< 1/2 max |U_c - U_c'|
+    float shear;   ///< 1/2 max |U_c - U_c'| over the boxes that touch
+    float beyond;  ///< max |U_c - U_c'| over the boxes around those
 };
 
 struct Boxes {
@@ -31,15 +34,18 @@ struct Boxes {
 
     GR_HD std::uint32_t of(const neighbors::Sphere& s) const { return grid.bucket(s); }
 
-    /// visit(bucket) for a box and those around it; where an axis has few buckets some come twice, which harms nothing.
+    /// visit(bucket, ring) for the boxes up to `rings` away; on axes of few buckets some come twice, which harms nothing.
     template <class Visit>
-    GR_HD void for_each_around(std::uint32_t bucket, const Visit& visit) const {
+    GR_HD void for_each_around(std::uint32_t bucket, int rings, const Visit& visit) const {
         const std::int32_t nx = grid.x.buckets, ny = grid.y.buckets, nz = grid.z.buckets, b = static_cast<std::int32_t>(bucket);
         const std::int32_t x = b % nx, y = b / nx % ny, z = b / nx / ny;
-        for (int dz = -1; dz <= 1; ++dz)
-            for (int dy = -1; dy <= 1; ++dy)
-                for (int dx = -1; dx <= 1; ++dx)
-                    visit(grid.row((y + dy + ny) % ny, (z + dz + nz) % nz) + static_cast<std::uint32_t>((x + dx + nx) % nx));
+        const auto turn = [](std::int32_t v, std::int32_t n) { return (v % n + n) % n; };
+        for (int dz = -rings; dz <= rings; ++dz)
+            for (int dy = -rings; dy <= rings; ++dy)
+                for (int dx = -rings; dx <= rings; ++dx) {
+                    const bool near = dx * dx <= 1 && dy * dy <= 1 && dz * dz <= 1;
+                    visit(grid.row(turn(y + dy, ny), turn(z + dz, nz)) + static_cast<std::uint32_t>(turn(x + dx, nx)), near ? 1 : 2);
+                }
     }
 };
 
@@ -63,7 +69,7 @@ void sum_boxes(const Boxes& boxes, View<const neighbors::Sphere> spheres, View<c
 void look_around(const Boxes& boxes) {
     for_each(boxes.sums.size, [=] GR_HD(std::size_t c) {
         double n = 0, x = 0, y = 0, z = 0, square = 0;
-        boxes.for_each_around(static_cast<std::uint32_t>(c), [&](std::uint32_t b) {
+        boxes.for_each_around(static_cast<std::uint32_t>(c), 1, [&](std::uint32_t b, int) {
             const Sums& s = boxes.sums[b];
             n += static_cast<double>(s.count);
             x += static_cast<double>(s.x);
@@ -73,16 +79,46 @@ void look_around(const Boxes& boxes) {
         });
         if (n == 0) return;
         const double vx = x / n / 16, vy = y / n / 16, vz = z / n / 16, variance = square / n * 1024 - (vx * vx + vy * vy + vz * vz);
-        boxes.around[c] = {{static_cast<float>(vx), static_cast<float>(vy), static_cast<float>(vz)}, sqrtf(static_cast<float>(variance > 0 ? variance : 0)), 0};
+        boxes.around[c] = {{static_cast<float>(vx), static_cast<float>(vy), static_cast<float>(vz)}, sqrtf(static_cast<float>(variance > 0 ? variance : 0)), 0, 0};
     });
     for_each(boxes.sums.size, [=] GR_HD(std::size_t c) {
-        float most = 0;
         if (boxes.sums[c].count == 0) return;
-        boxes.for_each_around(static_cast<std::uint32_t>(c), [&](std::uint32_t b) {
-            if (boxes.sums[b].count) most = fmaxf(most, length(boxes.around[b].frame - boxes.around[c].frame));
+        float most[2] = {0, 0};
+        boxes.for_each_around(static_cast<std::uint32_t>(c), 2, [&](std::uint32_t b, int ring) {
+            if (boxes.sums[b].count) most[ring - 1] = fmaxf(most[ring - 1], length(boxes.around[b].frame - boxes.around[c].frame));
         });
-        boxes.around[c].shear = 0.5f * most;
+        boxes.around[c].shear = 0.5f * most[0];
+        boxes.around[c].beyond = most[1];
     });
+}
+
+/// Largest figures over all boxes.
+struct Extremes {
+    float shear, beyond;
+    Vec3f slowest, fastest;  ///< of the frames, by axis
+};
+struct JoinExtremes {
+    GR_HD Extremes operator()(Extremes a, const Extremes& b) const {
+        a.shear = fmaxf(a.shear, b.shear);
+        a.beyond = fmaxf(a.beyond, b.beyond);
+        for (int k = 0; k < 3; ++k) {
+            a.slowest[k] = fminf(a.slowest[k], b.slowest[k]);
+            a.fastest[k] = fmaxf(a.fastest[k], b.fastest[k]);
+        }
+        return a;
+    }
+};
+
+/// Steps the list may last at most, by the bounds at the head of this file. `radius`: the largest, units.
+float longest_life(const Boxes& boxes, float wanted, float radius) {
+    const Extremes none{0, 0, {fastest, fastest, fastest}, {-fastest, -fastest, -fastest}};
+    const Extremes e = reduce(boxes.sums.size, none, [=] GR_HD(std::size_t c) {
+        const Surroundings& a = boxes.around[c];
+        return boxes.sums[c].count ? Extremes{a.shear, a.beyond, a.frame, a.frame} : none;
+    }, JoinExtremes{});
+    const float spread = boxes.sums.size ? length(e.fastest - e.slowest) : 0, least = 1e-30f;
+    const float bound = fminf(radius / (e.shear + least), fminf(4 * radius / (e.beyond + least), 12 * radius / (spread + least)));
+    return fmaxf(1.0f, floorf(fminf(wanted, bound)));
 }
 
 /// Floats for the search, relative to the periodic box where there is one; reach comes later.
@@ -96,10 +132,6 @@ void place_points(const State& s, View<neighbors::Sphere> spheres) {
         spheres[i] = {static_cast<float>(x.x), static_cast<float>(x.y), static_cast<float>(x.z), 0};
     });
 }
-
-struct Larger {
-    GR_HD float operator()(float a, float b) const { return a > b ? a : b; }
-};
 
 }  // namespace
 
@@ -126,9 +158,7 @@ void margins(State& s, const StepConstants& constants, const MarginRule& rule, A
     sum_boxes(boxes, spheres, body, to_units);
     look_around(boxes);
 
-    // Margin and shear together stay below the largest radius, or the near words would not tell neighbours apart.
-    const float shear = reduce(around.size(), 0.0f, [=] GR_HD(std::size_t c) { return boxes.around[c].shear; }, Larger{});
-    const float steps = fmaxf(1.0f, fminf(rule.interval, floorf(0.5f * rule.most_units / (shear + 1e-30f))));
+    const float steps = longest_life(boxes, rule.interval, rule.most_units);
     s.age.limit = static_cast<std::uint32_t>(steps);
     const float longest = fmaxf(fmaxf(fmaxf(fabsf(s.lower.x), fabsf(s.upper.x)), fmaxf(fabsf(s.lower.y), fabsf(s.upper.y))),
                                 fmaxf(fmaxf(fabsf(s.lower.z), fabsf(s.upper.z)), fmaxf(period.x, fmaxf(period.y, period.z))));
@@ -139,7 +169,7 @@ void margins(State& s, const StepConstants& constants, const MarginRule& rule, A
         const Near q = near[i];
         const Surroundings& a = boxes.around[boxes.of(spheres[i])];
         const float own = length(body[i].velocity * to_units - a.frame) + rule.spread * a.spread;
-        const float margin = fminf(own * steps + rule.least * static_cast<float>(q.radius), 0.5f * rule.most_units) + 1.0f;
+        const float margin = fminf(own * steps + rule.least * static_cast<float>(q.radius), rule.most_units);
         built[i] = {q.x, q.y, q.z, static_cast<std::int32_t>(margin)};
         frame[i] = a.frame;
         const float reach = static_cast<float>((static_cast<double>(q.radius) + built[i].radius + a.shear * steps) * unit);

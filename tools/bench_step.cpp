@@ -1,0 +1,132 @@
+// grainray bench step: the time of a step, stage by stage.
+#include <chrono>
+#include <cstdio>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "column_scene.hpp"
+#include "commands.hpp"
+#include "grainray/output.hpp"
+#include "preflight.hpp"
+#include "report.hpp"
+#include "setup.hpp"
+
+namespace grainray::cli {
+namespace {
+
+constexpr std::int64_t collapse_steps = 4000, settled_steps = 2000, settled_warmup = 200;
+
+struct Options {
+    std::string scene = "collapse";
+    std::filesystem::path init, json;
+    EngineOptions engine;
+    std::optional<std::int64_t> steps, warmup;
+};
+
+Scene scene_for(const Options& options) {
+    const bool built_in = options.scene == "collapse" || options.scene == "settled";
+    if (options.scene == "settled" && options.init.empty())
+        throw InputError("--scene settled needs the positions of a settled bed: --init FILE.csv with columns x y z radius [vx vy vz]");
+    if (!built_in && !options.scene.ends_with(".toml")) require_choice("--scene", options.scene, {"collapse", "settled", "FILE.toml"});
+    Scene scene = built_in ? parse_scene(column_scene, "column_collapse.toml", options.engine.set) : load_scene(options.scene, options.engine.set);
+    if (options.init.empty()) return scene;
+    if (scene.particles.empty()) throw InputError("--init: the scene has no group of particles to take the material from");
+    scene.particles.resize(1);
+    scene.particles[0].placement = ParticleFile{std::filesystem::absolute(options.init)};
+    scene.particles[0].velocity = scene.particles[0].angular_velocity = {};
+    return scene;
+}
+
+struct Measured {
+    std::uint64_t steps;
+    double wall_seconds;
+    Profile profile;
+    SearchReport search;
+};
+
+Measured measure(Simulation& simulation, std::int64_t warmup, std::int64_t steps) {
+    simulation.run(static_cast<std::uint64_t>(warmup));
+    const SearchReport before = simulation.search();
+    simulation.profile() = {};
+    const auto start = std::chrono::steady_clock::now();
+    simulation.run(static_cast<std::uint64_t>(steps));
+    Measured m{static_cast<std::uint64_t>(steps), std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(),
+               simulation.profile(), simulation.search()};
+    simulation.check_health();
+    m.search.rebuilds -= before.rebuilds;
+    m.search.mean_interval_steps = m.search.rebuilds ? static_cast<double>(steps) / static_cast<double>(m.search.rebuilds) : 0;
+    return m;
+}
+
+nlohmann::ordered_json report(const Simulation& simulation, const Options& options, const Measured& m) {
+    nlohmann::ordered_json json;
+    const double n = static_cast<double>(std::max<std::size_t>(simulation.size(), 1));
+    json["version"] = GRAINRAY_VERSION;
+    json["benchmark"] = "step";
+    json["scene"] = options.scene;
+    json["particles"] = simulation.size();
+    json["steps"] = m.steps;
+    add_speed(json, simulation.size(), m.steps, m.wall_seconds);
+    json["threads"] = ThreadLimit::count();
+    json["device"] = std::string(name(simulation.device()));
+    json["profile"] = profile_json(m.profile);
+    json["search"] = search_json(m.search);
+    json["memory_bytes"] = simulation.memory_bytes();
+    json["bytes_per_particle"] = static_cast<double>(simulation.memory_bytes()) / n;
+    json["peak_rss_bytes"] = peak_resident_bytes();
+    return json;
+}
+
+void print_table(const nlohmann::ordered_json& json, const Measured& m) {
+    const double steps = static_cast<double>(std::max<std::uint64_t>(m.steps, 1));
+    fmt::print("{}: {} particles, {} steps on {} with {} threads, search {}\n", json["scene"].get<std::string>(), json["particles"].get<std::uint64_t>(),
+               m.steps, json["device"].get<std::string>(), json["threads"].get<int>(), m.search.backend);
+    fmt::print("  {:<10} {:>10} {:>7}\n", "stage", "ms a step", "share");
+    double rest = m.wall_seconds;
+    for (const auto& [stage, value] : json["profile"].items()) {
+        const double seconds = value.get<double>();
+        rest -= seconds;
+        fmt::print("  {:<10} {:>10.4f} {:>6.1f}%\n", stage, 1e3 * seconds / steps, 100 * seconds / m.wall_seconds);
+    }
+    fmt::print("  {:<10} {:>10.4f} {:>6.1f}%\n", "rest", 1e3 * rest / steps, 100 * rest / m.wall_seconds);
+    fmt::print("  {:<10} {:>10.4f}\n", "whole", 1e3 * m.wall_seconds / steps);
+    fmt::print("{:.4g} million particle-steps/s; rebuild every {:.3g} steps, {:.3g} neighbours in the list of a particle; {:.0f} bytes a particle, {} at the peak\n",
+               json["particle_steps_per_second"].get<double>() / 1e6, m.search.mean_interval_steps, m.search.mean_neighbors,
+               json["bytes_per_particle"].get<double>(), bytes_text(json["peak_rss_bytes"].get<double>()));
+}
+
+int bench_step(const Options& options) {
+    const bool settled = options.scene == "settled";
+    const std::int64_t steps = options.steps.value_or(settled ? settled_steps : collapse_steps);
+    const std::int64_t warmup = options.warmup.value_or(settled ? settled_warmup : 0);
+    require_at_least("--steps", steps, 1);
+    require_at_least("--warmup", warmup, 0);
+    const ThreadLimit limit(options.engine.threads);
+    const Scene scene = scene_for(options);
+    const Engine engine = choose_engine(options.engine, scene);
+    Simulation simulation(scene, place_checked(scene), engine.options);
+    const Measured m = measure(simulation, warmup, steps);
+    const auto json = report(simulation, options, m);
+    print_table(json, m);
+    if (!options.json.empty()) write_text_atomically(options.json, json.dump(2) + '\n');
+    return done;
+}
+
+}  // namespace
+
+void add_bench_step(CLI::App& bench, Action& chosen) {
+    CLI::App* command = bench.add_subcommand("step", "Time of a step, stage by stage");
+    const auto options = std::make_shared<Options>();
+    command->add_option("--scene", options->scene, "collapse (20,160 grains, 4000 steps), settled (needs --init, 2000 steps after 200), or a scene file")
+        ->type_name("NAME|FILE.toml")->capture_default_str();
+    command->add_option("--init", options->init, "Start from these particles: columns x y z radius [vx vy vz]")->type_name("FILE.csv");
+    command->add_option("--steps", options->steps, "Steps that are timed")->type_name("N");
+    command->add_option("--warmup", options->warmup, "Steps before")->type_name("N");
+    command->add_option("--json", options->json, "Write the figures to this file")->type_name("FILE");
+    add_engine_options(*command, options->engine);
+    command->footer("Example: grainray bench step --scene collapse --steps 500 --threads 1 --json step.json");
+    command->callback([options, &chosen] { chosen = [options] { return bench_step(*options); }; });
+}
+
+}  // namespace grainray::cli

@@ -1,0 +1,133 @@
+// grainray check: everything that can be said about a scene without running it.
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <map>
+
+#include <fmt/format.h>
+
+#include "arguments.hpp"
+#include "commands.hpp"
+#include "preflight.hpp"
+#include "setup.hpp"
+
+namespace grainray::cli {
+namespace {
+
+constexpr int probe_steps = 20;
+constexpr double probe_seconds = 0.3;
+
+struct Options {
+    std::filesystem::path scene;
+    EngineOptions engine;
+};
+
+std::string vector_text(const Vec3d& v) { return fmt::format("({:.6g}, {:.6g}, {:.6g})", v.x, v.y, v.z); }
+
+/// Particles of each group: what the scene says, and for the others what placing them alone gives.
+std::vector<double> group_counts(const Scene& scene, std::size_t total) {
+    if (scene.particles.size() == 1) return {static_cast<double>(total)};
+    std::vector<double> counts = expected_counts(scene);
+    for (std::size_t g = 0; g < counts.size(); ++g) {
+        if (counts[g] > 0) continue;
+        Scene alone = scene;
+        alone.particles = {scene.particles[g]};
+        counts[g] = static_cast<double>(place_particles(alone).size());
+    }
+    return counts;
+}
+
+void print_particles(const Scene& scene, const InitialState& s) {
+    fmt::print("particles    {}\n", s.size());
+    const auto counts = group_counts(scene, s.size());
+    for (std::size_t g = 0; g < counts.size(); ++g)
+        fmt::print("  {:<16} {:.0f} of material {}\n", scene.particles[g].name, counts[g], scene.particles[g].material);
+    std::map<std::uint32_t, std::size_t> of_material;
+    for (const std::uint32_t m : s.materials) ++of_material[m];
+    for (const auto& [m, count] : of_material) fmt::print("  material {:<7} {} particles\n", scene.materials[m].name, count);
+    if (s.size() == 0) return;
+    const auto [least, most] = std::minmax_element(s.radii.begin(), s.radii.end());
+    const Box box = *bounds(s);
+    fmt::print("radii        {:.6g} to {:.6g} m\n", *least, *most);
+    fmt::print("bounds       {} to {} m\n", vector_text(box.lower), vector_text(box.upper));
+    fmt::print("planes       {}\n", scene.planes.size());
+}
+
+void print_overlaps(const Scene& scene, const Overlaps& o) {
+    fmt::print("overlaps     {} pairs, {} with planes at the start\n", o.pairs, o.with_planes);
+    if (const auto& w = o.worst_pair)
+        fmt::print("  worst pair       particles {} and {}: {:.4g} m, {:.3g} of the smaller radius\n", w->a, w->b, w->overlap, w->ratio);
+    if (const auto& w = o.worst_plane)
+        fmt::print("  worst plane      particle {} in '{}': {:.4g} m, {:.3g} of its radius\n", w->particle, scene.planes[w->plane].name, w->overlap, w->ratio);
+}
+
+void print_steps(const Scene& scene, const std::vector<CriticalStep>& steps) {
+    fmt::print("time step    {:.4g} s, {} steps\n", scene.dt, scene.steps());
+    if (steps.empty()) return;
+    std::size_t width = 7;
+    for (const CriticalStep& step : steps) width = std::max(width, step.contact.size());
+    fmt::print("  {:<{}}  critical dt  dt/critical  verdict   field to change\n", "contact", width);
+    for (const CriticalStep& step : steps) {
+        const StepVerdict v = verdict(step, scene.dt);
+        fmt::print("  {:<{}}  {:<11.4g}  {:<11.3g}  {:<8}  {}\n", step.contact, width, step.critical_dt, scene.dt / step.critical_dt,
+                   v == StepVerdict::ok ? "ok" : v == StepVerdict::risky ? "risky" : "unstable", step.field);
+    }
+}
+
+/// Runs the scene itself for a moment.
+void print_probe(const Scene& scene, const InitialState& s, const Preflight& p, const Engine& engine) {
+    Simulation simulation(scene, s, engine.options);
+    using clock = std::chrono::steady_clock;
+    const auto start = clock::now();
+    double seconds = 0;
+    int steps = 0;
+    while (steps < probe_steps && seconds < probe_seconds) {
+        simulation.step();
+        ++steps;
+        seconds = std::chrono::duration<double>(clock::now() - start).count();
+    }
+    const double per_step = seconds / steps, n = static_cast<double>(std::max<std::size_t>(s.size(), 1));
+    fmt::print("device       {} ({}), {} threads\n", name(engine.options.device), engine.device_reason, ThreadLimit::count());
+    fmt::print("memory       {} for the simulation ({:.0f} bytes a particle now), {} at most while writing\n", bytes_text(p.needs.memory_bytes),
+               static_cast<double>(simulation.memory_bytes()) / n, bytes_text(p.needs.peak_bytes));
+    fmt::print("disk         {} ({} a frame)\n", bytes_text(p.needs.disk_bytes), bytes_text(p.needs.frame_bytes));
+    fmt::print("wall time    about {} ({} particle-steps/s over the first {} steps)\n", duration_text(per_step * static_cast<double>(scene.steps())),
+               short_number(n / per_step), steps);
+}
+
+int check(const Options& options) {
+    const ThreadLimit limit(options.engine.threads);
+    const Scene scene = load_scene(options.scene, options.engine.set);
+    const Engine engine = choose_engine(options.engine, scene);
+    const InitialState particles = place_checked(scene);
+    Preflight preflight = inspect(scene, particles);
+    inspect_disk(".", preflight);
+    fmt::print("scene        {}{}\n", options.scene.string(), scene.title.empty() ? "" : ": " + scene.title);
+    print_particles(scene, particles);
+    print_overlaps(scene, preflight.overlaps);
+    print_steps(scene, preflight.steps);
+    if (!preflight.first_refusal()) print_probe(scene, particles, preflight, engine);
+    for (const Finding& finding : preflight.findings) fmt::print("{:<12} {}\n", finding.refused ? "refused" : "warning", finding.text);
+    if (const Finding* refusal = preflight.first_refusal()) {
+        fmt::print("verdict      refused\n");
+        std::fflush(stdout);
+        throw InputError(refusal->text);
+    }
+    const std::size_t warnings = preflight.warnings();
+    fmt::print("verdict      {}\n", warnings == 0 ? "ok" : fmt::format("can run, with {} warning{}", warnings, warnings == 1 ? "" : "s"));
+    return done;
+}
+
+}  // namespace
+
+void add_check(CLI::App& app, Action& chosen) {
+    CLI::App* command = app.add_subcommand("check", "Validate a scene, forecast memory, time and stability; writes nothing");
+    const auto options = std::make_shared<Options>();
+    command->add_option("SCENE", options->scene, "Scene file")->required()->type_name("");
+    add_engine_options(*command, options->engine);
+    command->footer("Example: grainray check examples/column_collapse_literal.toml --set simulation.dt=1e-3\n"
+                    "Exit status 0: it can run, perhaps with warnings; 2: it is refused, and the message names the field to change.");
+    command->callback([options, &chosen] { chosen = [options] { return check(*options); }; });
+}
+
+}  // namespace grainray::cli
