@@ -114,7 +114,8 @@ Simulation::Impl::Impl(const Scene& s, const SimulationOptions& o, const Positio
     state.quanta = Quanta::for_scale(stiffest, largest);
     constants = {static_cast<float>(scene.dt), convert<float>(scene.gravity), static_cast<float>(scene.contact.mass_damping)};
     if (scene.search.skin > 0) margin_rule.least = static_cast<float>(scene.search.skin);
-    if (scene.search.interval > 0) margin_rule.interval = static_cast<float>(scene.search.interval);
+    tuner = IntervalTuner(scene.search.interval);
+    margin_rule.interval = static_cast<float>(tuner.interval());
     margin_rule.most_units = static_cast<float>(largest / scale.unit);
     margin_rule.trigger = scene.search.trigger == Trigger::published ? 2.0f : 1.0f;
 

@@ -22,6 +22,7 @@ private:
 
 void Simulation::Impl::step() {
     if (state.age.outdated) {
+        tune_interval();
         Timed timed(profile.neighbors);
         update_lists();
     }
@@ -44,6 +45,13 @@ void Simulation::Impl::step() {
     ++step_number;
     ++steps_since_start;
     if (planes_move) place_planes();
+}
+
+void Simulation::Impl::tune_interval() {
+    tuner.finished(state.age.steps, state.grains.partners.size(), profile.neighbors - list_start.neighbors,
+                   profile.contacts - list_start.contacts);
+    margin_rule.interval = static_cast<float>(tuner.interval());
+    list_start = profile;
 }
 
 void Simulation::Impl::prepare() {

@@ -4,6 +4,7 @@
 
 #include "exec/threads.hpp"
 #include "grainray/simulation.hpp"
+#include "neighbors/interval.hpp"
 #include "state.hpp"
 
 namespace grainray {
@@ -19,6 +20,8 @@ struct Simulation::Impl {
     ContactLaw law;
     StepConstants constants;
     MarginRule margin_rule;
+    IntervalTuner tuner;
+    Profile list_start;                      ///< the profile when the present list was begun
     ContactList old_grains, old_walls;       ///< the lists before the last build; their memory is the next one's
     NeighborList found;
     Array<std::uint32_t> old_index;
@@ -36,6 +39,7 @@ struct Simulation::Impl {
     void step();
     void update_lists();
     void place_planes();                     ///< where they are at time()
+    void tune_interval();
     double time() const { return static_cast<double>(step_number) * scene.dt; }
 };
 

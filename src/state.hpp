@@ -63,7 +63,7 @@ struct StepConstants {
 
 /// How margins are chosen; see src/neighbors/verlet.cpp.
 struct MarginRule {
-    float least = 0.05f;      ///< of the particle's radius
+    float least = 0.03f;      ///< of the particle's radius
     float spread = 0.5f;      ///< standard deviations of the surroundings' velocity added to the particle's own speed
     float interval = 20;      ///< steps the list is meant to last
     float most_units = 0;     ///< the largest radius: margins beyond it would outgrow the near words

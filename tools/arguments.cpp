@@ -71,8 +71,8 @@ PixelSize parse_size(const std::string& option, const std::string& text) {
     const auto parts = split(text, 'x');
     PixelSize size{};
     const bool good = parts.size() == 2 && parse_number(parts[0], size.width) && parse_number(parts[1], size.height) &&
-                      size.width >= 1 && size.height >= 1 && size.width <= 16384 && size.height <= 16384;
-    if (!good) throw InputError(fmt::format("{}: '{}' is not a size of 1 to 16384 pixels each way; write for example {} 1920x1080", option, text, option));
+                      size.width >= 16 && size.height >= 16 && size.width <= 16384 && size.height <= 16384;
+    if (!good) throw InputError(fmt::format("{}: '{}' is not a size of 16 to 16384 pixels each way; write for example {} 1920x1080", option, text, option));
     return size;
 }
 

@@ -91,8 +91,9 @@ void print_probe(const Scene& scene, const InitialState& s, const Preflight& p, 
     fmt::print("memory       {} for the simulation ({:.0f} bytes a particle now), {} at most while writing\n", bytes_text(p.needs.memory_bytes),
                static_cast<double>(simulation.memory_bytes()) / n, bytes_text(p.needs.peak_bytes));
     fmt::print("disk         {} ({} a frame)\n", bytes_text(p.needs.disk_bytes), bytes_text(p.needs.frame_bytes));
-    fmt::print("wall time    about {} ({} particle-steps/s over the first {} steps)\n", duration_text(per_step * static_cast<double>(scene.steps())),
-               short_number(n / per_step), steps);
+    const bool loose = simulation.statistics().coordination < 1;
+    fmt::print("wall time    about {} at the speed of the first {} steps, {} particle-steps/s{}\n", duration_text(per_step * static_cast<double>(scene.steps())),
+               steps, short_number(n / per_step), loose ? "; 3 to 6 times as long once the grains lie on each other" : "");
 }
 
 int check(const Options& options) {

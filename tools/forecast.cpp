@@ -6,14 +6,14 @@
 namespace grainray::cli {
 namespace {
 
-// Measured on the CPU with the settled column of 20,160 grains (14 neighbours in the list of each) and its lattice start,
-// bytes a particle; tests/cli checks that runs stay below.
-constexpr double state_bytes = 900;
-constexpr double peak_bytes_per_particle = 1900;
-constexpr double process_bytes = 40e6;
-// A vtp frame with every field: 72 bytes in base64; as text a value takes about 9.
-constexpr double vtp_bytes = 118, csv_bytes = 180;
-constexpr double checkpoint_bytes = 200;
+// Measured on the CPU with column collapses of 20,160 and 161,280 grains that lie on each other (15 neighbours in the
+// list of a grain; 710 and 570 bytes) and with two spheres, bytes a particle.
+constexpr double state_bytes = 800;
+constexpr double peak_bytes = 2500;    // while a frame or a checkpoint is written; 2300 found
+constexpr double process_bytes = 90e6;  // of the program itself
+// A vtp frame with every field holds 72 bytes in base64 and its tags; as text a value takes about 9.
+constexpr double vtp_bytes = 118, csv_bytes = 180, file_bytes = 2000;
+constexpr double checkpoint_bytes = 130;
 
 }  // namespace
 
@@ -33,8 +33,8 @@ std::vector<double> expected_counts(const Scene& scene) {
 Forecast forecast(const Scene& scene, double particles) {
     Forecast f;
     f.memory_bytes = state_bytes * particles;
-    f.peak_bytes = process_bytes + peak_bytes_per_particle * particles;
-    f.frame_bytes = particles * (scene.output.format == "csv" ? csv_bytes : vtp_bytes);
+    f.peak_bytes = process_bytes + peak_bytes * particles;
+    f.frame_bytes = particles * (scene.output.format == "csv" ? csv_bytes : vtp_bytes) + file_bytes;
     const double frames = scene.output.frames > 0 ? std::floor(scene.duration / std::max(scene.output.frames, scene.dt)) + 1 : 2;
     f.disk_bytes = frames * f.frame_bytes + 2 * checkpoint_bytes * particles;  // the old checkpoint goes when the new one is there
     return f;

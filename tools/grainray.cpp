@@ -19,7 +19,6 @@ int report(std::string message, int status) {
     return status;
 }
 
-#ifdef GRAINRAY_HAS_VALIDATE
 void add_validate(CLI::App& app, Action& chosen) {
     struct Options {
         std::vector<std::string> only;
@@ -32,7 +31,6 @@ void add_validate(CLI::App& app, Action& chosen) {
     command->footer("Example: grainray validate --quick");
     command->callback([options, &chosen] { chosen = [options] { return run_validate(options->only, options->quick); }; });
 }
-#endif
 
 void add_commands(CLI::App& app, Action& chosen) {
     app.set_version_flag("--version", "grainray " GRAINRAY_VERSION);
@@ -44,9 +42,7 @@ void add_commands(CLI::App& app, Action& chosen) {
     add_info(app, chosen);
     add_render(app, chosen);
     add_bench(app, chosen);
-#ifdef GRAINRAY_HAS_VALIDATE
     add_validate(app, chosen);
-#endif
 }
 
 int parse_and_run(int argc, char** argv) {

@@ -44,17 +44,6 @@ void inspect_overlaps(const Scene& scene, Preflight& p) {
     }
 }
 
-void inspect_domain(const Scene& scene, const InitialState& s, Preflight& p) {
-    if (!scene.domain.box) return;
-    for (std::size_t i = 0; i < s.size(); ++i)
-        for (int a = 0; a < 3; ++a) {
-            const double x = s.positions[i][a], lower = scene.domain.box->lower[a], upper = scene.domain.box->upper[a];
-            if (scene.domain.periodic[static_cast<std::size_t>(a)] || (x >= lower && x <= upper)) continue;
-            return refuse(p, fmt::format("particle {} starts at {} = {:.6g} m, outside the domain ({:.6g} to {:.6g} m); move it or widen domain.{}", i,
-                                         "xyz"[a], x, lower, upper, x < lower ? "lower" : "upper"));
-        }
-}
-
 void inspect_speeds(const Scene& scene, const InitialState& s, Preflight& p) {
     if (s.velocities.empty()) return;
     const double smallest = *std::min_element(s.radii.begin(), s.radii.end());
@@ -110,7 +99,6 @@ Preflight inspect(const Scene& scene, const InitialState& s, bool restarted) {
     if (!restarted) {
         p.overlaps = initial_overlaps(scene, s);
         inspect_overlaps(scene, p);
-        inspect_domain(scene, s, p);
         inspect_speeds(scene, s, p);
     }
     inspect_memory(p);

@@ -1,6 +1,7 @@
 #include "run_loop.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <chrono>
 #include <cmath>
 
@@ -20,6 +21,13 @@ double seconds_since(clock::time_point start) { return std::chrono::duration<dou
 bool due(std::uint64_t step, std::uint64_t every) { return every != 0 && step % every == 0; }
 
 std::uint64_t next_multiple(std::uint64_t step, std::uint64_t every) { return every == 0 ? UINT64_MAX : (step / every + 1) * every; }
+
+/// A run looks at its state after 1, 2, 4 ... steps, when a bad start shows, and then every health_interval.
+std::uint64_t next_health(std::uint64_t first, std::uint64_t step) {
+    const std::uint64_t early = std::bit_ceil(step - first + 1);
+    return std::min(next_multiple(step, health_interval), first + early);
+}
+bool health_due(std::uint64_t first, std::uint64_t step) { return due(step, health_interval) || std::has_single_bit(step - first); }
 
 std::uint64_t whole_steps(double interval, double dt) {
     if (!(interval > 0)) return 0;
@@ -79,7 +87,7 @@ bool RunLoop::run() {
 std::uint64_t RunLoop::next_stop() const {
     const std::uint64_t now = simulation_.step_count();
     return std::min({plan_.last, next_multiple(now, plan_.frames), next_multiple(now, plan_.history), next_multiple(now, plan_.checkpoints),
-                     next_multiple(now, health_interval)});
+                     next_health(plan_.first, now)});
 }
 
 /// Steps towards `limit`, for about batch_seconds.
@@ -112,7 +120,7 @@ void RunLoop::write_due() {
     const std::uint64_t step = simulation_.step_count();
     const bool end = step == plan_.last, frame = end || due(step, plan_.frames), history = end || due(step, plan_.history),
                checkpoint = end || due(step, plan_.checkpoints);
-    if (!frame && !history && !checkpoint && !due(step, health_interval)) return;
+    if (!frame && !history && !checkpoint && !health_due(plan_.first, step)) return;
     const auto start = clock::now();
     simulation_.check_health();
     if (frame) write_frame();

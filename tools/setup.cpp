@@ -9,6 +9,7 @@
 #include <fmt/ranges.h>
 #include <tbb/global_control.h>
 
+#include "grainray/neighbors.hpp"
 #include "resolved_scene.hpp"
 
 namespace grainray::cli {

@@ -24,14 +24,16 @@ struct Quanta {
     }
 };
 
+inline constexpr double quantum_bound = 1125899906842624.0;  // 2^50
+inline constexpr double quantum_magic = 6755399441055744.0;  // 1.5 * 2^52
+
 /// Nearest integer (ties to even) by the addition of 1.5 * 2^52, which vectorises where a conversion does not.
 /// Values are held to +-2^50 quanta; NaN becomes the bound, so that it cannot hide in an integer.
 GR_HD inline std::int64_t quantize(float value, double inverse_quantum) {
-    constexpr double bound = 1125899906842624.0, magic = 6755399441055744.0;
     double v = static_cast<double>(value) * inverse_quantum;
-    v = v < bound ? v : bound;
-    v = v > -bound ? v : -bound;
-    return std::bit_cast<std::int64_t>(v + magic) - std::bit_cast<std::int64_t>(magic);
+    v = v < quantum_bound ? v : quantum_bound;
+    v = v > -quantum_bound ? v : -quantum_bound;
+    return std::bit_cast<std::int64_t>(v + quantum_magic) - std::bit_cast<std::int64_t>(quantum_magic);
 }
 
 }  // namespace grainray

@@ -8,8 +8,8 @@ namespace {
 
 /// Local damping (Cundall 1987), one axis: a <- a (1 - alpha sign(a v)).
 GR_HD inline float damped(float a, float v, float alpha) {
-    const float power = a * v;
-    return a * (1.0f - (power > 0 ? alpha : power < 0 ? -alpha : 0.0f));
+    const float power = a * v, sign = static_cast<float>((power > 0) - (power < 0));  // no branch: its side is a coin toss
+    return a * (1.0f - alpha * sign);
 }
 
 struct Integrate {

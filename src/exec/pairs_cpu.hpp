@@ -3,6 +3,8 @@
 // Blocks run in parallel and write only their own particles.
 #pragma once
 
+#include <cstring>
+
 #include "contacts/pair.hpp"
 #include "exec/cpu.hpp"
 
@@ -24,15 +26,19 @@ struct alignas(64) Batch {
     float velocity[3][width], spin_i[3][width], spin_j[3][width], mass[width];
     float kn[width], kt[width], mu[width], cn[width], ct[width];
     float history[3][width];
-    float force[3][width], torque_i[3][width], torque_j[3][width];
+    float on_i[width][8], on_j[width][8];  ///< force, torque, 2 unused: a particle's sums as 8 lanes
     int size = 0;
 };
+
+// 8 lanes, whatever the registers: the compiler splits them where they are narrower.
+using Float8 [[gnu::vector_size(32)]] = float;
+using Double8 [[gnu::vector_size(64)]] = double;
+using Long8 [[gnu::vector_size(64)]] = std::int64_t;
 
 [[gnu::always_inline]] inline void gather(const PairLoop& loop, Batch& b) {
     for (int l = 0; l < b.size; ++l) {
         const Body& p = loop.body[b.i[l]];
         const Body& q = loop.body[b.j[l]];
-        const PairParameters& c = loop.of(p.material, q.material);
         const Vec3f& h = loop.history[b.entry[l]];
         for (int a = 0; a < 3; ++a) {
             b.velocity[a][l] = p.velocity[a] - q.velocity[a];
@@ -43,6 +49,12 @@ struct alignas(64) Batch {
         b.radius_i[l] = loop.near[b.i[l]].radius;
         b.radius_j[l] = loop.near[b.j[l]].radius;
         b.mass[l] = 0.5f * (p.mass + q.mass);
+    }
+}
+
+[[gnu::always_inline]] inline void gather_parameters(const PairLoop& loop, Batch& b) {
+    for (int l = 0; l < b.size; ++l) {
+        const PairParameters& c = loop.of(loop.body[b.i[l]].material, loop.body[b.j[l]].material);
         b.kn[l] = c.kn;
         b.kt[l] = c.kt;
         b.mu[l] = c.mu;
@@ -51,8 +63,10 @@ struct alignas(64) Batch {
     }
 }
 
+/// The law over a whole batch; lanes past b.size compute what nobody reads.
 template <class Law>
 [[gnu::always_inline]] inline void evaluate(const Law& law, float unit, Batch& b) {
+    alignas(64) float force[3][width], torque_i[3][width], torque_j[3][width];
 #pragma GCC ivdep
     for (int l = 0; l < width; ++l) {
         Vec3f h{b.history[0][l], b.history[1][l], b.history[2][l]};
@@ -64,41 +78,57 @@ template <class Law>
         b.history[0][l] = h.x;
         b.history[1][l] = h.y;
         b.history[2][l] = h.z;
-        b.force[0][l] = f.force.x;
-        b.force[1][l] = f.force.y;
-        b.force[2][l] = f.force.z;
-        b.torque_i[0][l] = f.torque_i.x;
-        b.torque_i[1][l] = f.torque_i.y;
-        b.torque_i[2][l] = f.torque_i.z;
-        b.torque_j[0][l] = f.torque_j.x;
-        b.torque_j[1][l] = f.torque_j.y;
-        b.torque_j[2][l] = f.torque_j.z;
+        force[0][l] = f.force.x;
+        force[1][l] = f.force.y;
+        force[2][l] = f.force.z;
+        torque_i[0][l] = f.torque_i.x;
+        torque_i[1][l] = f.torque_i.y;
+        torque_i[2][l] = f.torque_i.z;
+        torque_j[0][l] = f.torque_j.x;
+        torque_j[1][l] = f.torque_j.y;
+        torque_j[2][l] = f.torque_j.z;
     }
+    for (int l = 0; l < b.size; ++l)
+        for (int a = 0; a < 3; ++a) {
+            b.on_i[l][a] = force[a][l];
+            b.on_j[l][a] = -force[a][l];
+            b.on_i[l][3 + a] = torque_i[a][l];
+            b.on_j[l][3 + a] = torque_j[a][l];
+        }
 }
 
-/// Adds 3 forces and 3 torques to a particle, as 8 lanes of one cache line.
-[[gnu::always_inline]] inline void add(Wrench& w, const float (&values)[8], const double (&scale)[8]) {
-    std::int64_t* sums = w.force;
-    for (int a = 0; a < 8; ++a) sums[a] += quantize(values[a], scale[a]);
+/// quantize() of 8 values at once, added to a particle's sums.
+[[gnu::always_inline]] inline void add(Wrench& w, const float* values, const Double8& scale) {
+    Float8 f;
+    std::memcpy(&f, values, sizeof f);
+    Double8 v = __builtin_convertvector(f, Double8) * scale;
+    const Double8 bound = Double8{} + quantum_bound, magic = Double8{} + quantum_magic;
+    v = v < bound ? v : bound;
+    v = v > -bound ? v : -bound;
+    const Double8 shifted = v + magic;
+    Long8 bits, zero, sums;
+    std::memcpy(&bits, &shifted, sizeof bits);
+    std::memcpy(&zero, &magic, sizeof zero);
+    std::memcpy(&sums, &w, sizeof sums);
+    sums += bits - zero;
+    std::memcpy(&w, &sums, sizeof sums);
 }
 
 [[gnu::always_inline]] inline void scatter(const PairLoop& loop, const Batch& b, std::uint32_t block_end) {
     const double f = loop.inverse_force, t = loop.inverse_torque;
-    const double scale[8] = {f, f, f, t, t, t, 0, 0};
+    const Double8 scale{f, f, f, t, t, t, 0, 0};
     for (int l = 0; l < b.size; ++l) {
         loop.history[b.entry[l]] = {b.history[0][l], b.history[1][l], b.history[2][l]};
-        const float on_i[8] = {b.force[0][l], b.force[1][l], b.force[2][l], b.torque_i[0][l], b.torque_i[1][l], b.torque_i[2][l], 0, 0};
-        add(loop.wrench[b.i[l]], on_i, scale);
-        if (b.j[l] - (block_end - loop.block) < loop.block) {  // unsigned: j stands in this block
-            const float on_j[8] = {-b.force[0][l], -b.force[1][l], -b.force[2][l], b.torque_j[0][l], b.torque_j[1][l], b.torque_j[2][l], 0, 0};
-            add(loop.wrench[b.j[l]], on_j, scale);
-        }
+        add(loop.wrench[b.i[l]], b.on_i[l], scale);
+        if (b.j[l] - (block_end - loop.block) < loop.block)  // unsigned: j stands in this block
+            add(loop.wrench[b.j[l]], b.on_j[l], scale);
     }
 }
 
 template <class Law>
 [[gnu::always_inline]] inline void flush(const PairLoop& loop, const Law& law, Batch& b, std::uint32_t block_end) {
     gather(loop, b);
+    if (loop.materials > 1) gather_parameters(loop, b);
     evaluate(law, loop.unit, b);
     scatter(loop, b, block_end);
     b.size = 0;
@@ -108,11 +138,26 @@ template <class Law>
 template <bool periodic, class Law>
 [[gnu::always_inline]] inline void run_block(const PairLoop& loop, const Law& law, std::uint32_t first, std::uint32_t last, std::uint32_t block_end) {
     Batch b{};
+    if (loop.materials == 1) {
+        const PairParameters& c = loop.parameters[0];
+        for (int l = 0; l < width; ++l) {
+            b.kn[l] = c.kn;
+            b.kt[l] = c.kt;
+            b.mu[l] = c.mu;
+            b.cn[l] = c.cn;
+            b.ct[l] = c.ct;
+        }
+    }
+    constexpr std::uint64_t ahead = 24;
+    const std::uint64_t entries = loop.partners.size;
     Vec3f dump;  // where pairs that do touch send their "no history"
     for (std::uint32_t i = first; i < last; ++i) {
         const Near p = loop.near[i];
         for (std::uint64_t e = loop.offsets[i], end = loop.offsets[i + 1]; e < end; ++e) {
             const std::uint32_t j = loop.partners[e];
+            __builtin_prefetch(&loop.near[loop.partners[e + ahead < entries ? e + ahead : e]]);
+            __builtin_prefetch(&loop.body[j]);
+            __builtin_prefetch(&loop.wrench[j], 1);
             Separation s;
             if constexpr (periodic) s = separation(p, loop.far[i], loop.near[j], loop.far[j], loop.period);
             else s = separation(p, loop.near[j]);

@@ -6,8 +6,8 @@ namespace grainray::GRAINRAY_EXEC {
 namespace {
 
 struct Extent {
-    float lo[3], hi[3], max_reach;
-    double sum_reach;
+    float lo[3], hi[3];
+    double max_reach, sum_reach;
 };
 
 struct Join {
@@ -77,7 +77,7 @@ void pack_points(const Points& points, const neighbors::Request& request, const 
     }, Join{});
     packed.lower = {all.lo[0], all.lo[1], all.lo[2]};
     packed.upper = {all.hi[0], all.hi[1], all.hi[2]};
-    packed.max_reach = all.max_reach;
+    packed.max_reach = static_cast<float>(all.max_reach);
     packed.mean_reach = static_cast<float>(all.sum_reach / static_cast<double>(n));
 }
 

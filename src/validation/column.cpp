@@ -1,5 +1,6 @@
 // The two columns against LAMMPS and LIGGGHTS. `expected` is the mean over their runs (A: three seeds each; B: two and one),
-// the tolerance covers the scatter of those runs about it; benchmarks/peers/README.md has the runs.
+// the tolerance covers the scatter of those runs about it; benchmarks/peers/README.md has the runs. Peers write energies with
+// full-step velocities, grainray with half-step ones: up to 0.3 % of the kinetic energy while it changes fastest.
 #include "validation/column.hpp"
 
 #include <algorithm>
@@ -22,7 +23,7 @@ constexpr Energies energies_A[] = {{500, 1.38632e6, 1.10726e7, 0.01, 0.005},  {1
                                    {10000, 0, 2.52430e6, 0, 0.02}};
 constexpr Energies energies_B[] = {{500, 1.19277e6, 6.60380e6, 0.01, 0.005},  {1000, 1.53295e6, 3.55170e6, 0.01, 0.005},
                                    {1200, 4.04702e5, 2.94850e6, 0.02, 0.005},  {1500, 3.33432e5, 2.94554e6, 0.03, 0.005},
-                                   {2000, 2.66551e5, 2.47895e6, 0.03, 0.01},   {3000, 4.49048e4, 2.10576e6, 0.05, 0.01},
+                                   {2000, 2.66551e5, 2.47895e6, 0.05, 0.01},   {3000, 4.49048e4, 2.10576e6, 0.05, 0.01},
                                    {8000, 0, 1.99107e6, 0, 0.01}};
 
 /// Figures of the deposits of the peers; 0: shown, not gated.
@@ -32,46 +33,76 @@ struct Figure {
     double expected, tolerance;
     bool relative;
 };
-constexpr Figure deposit_A[] = {{"x_edge, m", &Deposit::x_edge, 23.458, 0.015, true},       {"x_95, m", &Deposit::x_95, 20.536, 0.02, true},
-                                {"x_99, m", &Deposit::x_99, 24.561, 0.02, true},            {"h_wall, m", &Deposit::h_wall, 4.700, 0.03, true},
-                                {"z_mean, m", &Deposit::z_mean, 1.4946, 0.02, true},        {"angle_secant, deg", &Deposit::angle_secant, 11.330, 0.4, false},
-                                {"angle_steep, deg", &Deposit::angle_steep, 16.532, 0, false}};
-constexpr Figure deposit_B[] = {{"x_edge, m", &Deposit::x_edge, 12.332, 0.015, true},       {"x_95, m", &Deposit::x_95, 11.640, 0.02, true},
-                                {"x_99, m", &Deposit::x_99, 15.722, 0, false},              {"h_wall, m", &Deposit::h_wall, 3.818, 0.03, true},
-                                {"z_mean, m", &Deposit::z_mean, 1.2002, 0.01, true},        {"angle_secant, deg", &Deposit::angle_secant, 17.203, 0.4, false},
-                                {"angle_steep, deg", &Deposit::angle_steep, 21.608, 0, false}};
-struct Lines {
-    double top, mass;
-};
-constexpr Lines angles_A{9.145, 10.094}, angles_B{15.212, 17.190};
+constexpr Figure deposit_A[] = {
+    {"x_edge, m", &Deposit::x_edge, 23.458, 0.01, true},           {"x_95, m", &Deposit::x_95, 20.533, 0.01, true},
+    {"x_99, m", &Deposit::x_99, 24.563, 0.01, true},               {"h_wall, m", &Deposit::h_wall, 4.700, 0.03, true},
+    {"z_mean, m", &Deposit::z_mean, 1.4946, 0.02, true},           {"angle_secant, deg", &Deposit::angle_secant, 11.329, 0.3, false},
+    {"angle_top, deg", &Deposit::angle_top, 9.145, 0.4, false},    {"angle_mass, deg", &Deposit::angle_mass, 10.094, 0.6, false},
+    {"angle_steep, deg", &Deposit::angle_steep, 16.53, 0, false}};
+constexpr Figure deposit_B[] = {
+    {"x_edge, m", &Deposit::x_edge, 12.332, 0.01, true},           {"x_95, m", &Deposit::x_95, 11.640, 0.01, true},
+    {"x_99, m", &Deposit::x_99, 15.722, 0, false},                 {"h_wall, m", &Deposit::h_wall, 3.818, 0.03, true},
+    {"z_mean, m", &Deposit::z_mean, 1.2002, 0.01, true},           {"angle_secant, deg", &Deposit::angle_secant, 17.203, 0.3, false},
+    {"angle_top, deg", &Deposit::angle_top, 15.212, 0.4, false},   {"angle_mass, deg", &Deposit::angle_mass, 17.189, 0.6, false},
+    {"angle_steep, deg", &Deposit::angle_steep, 21.61, 0, false}};
 
-/// Runs to the last of `steps`, comparing energies on the way.
+/// What the runs of several seeds have in common: the flow is chaotic, one run says little about the next.
+struct Means {
+    std::vector<double> kinetic, potential;
+    Deposit deposit{};
+};
+
+constexpr double Deposit::*deposit_fields[] = {&Deposit::x_edge, &Deposit::x_toe, &Deposit::x_50, &Deposit::x_95, &Deposit::x_99, &Deposit::x_max,
+                                               &Deposit::z_mean, &Deposit::h_wall, &Deposit::angle_secant, &Deposit::angle_top,
+                                               &Deposit::r2_top, &Deposit::angle_mass, &Deposit::r2_mass, &Deposit::angle_steep};
+
 template <std::size_t n>
-Simulation run(Report& report, const Column& column, const Energies (&energies)[n], int steps) {
-    const Scene scene = column_scene(column, 1);
-    Simulation s(scene, place_particles(scene), report.options);
-    for (const Energies& e : energies) {
-        if (e.step > steps) break;
-        s.run(static_cast<std::uint64_t>(e.step) - s.step_count());
-        s.check_health();
-        const Statistics now = s.statistics();
-        const std::string at = " at " + std::to_string(e.step / 1000) + "." + std::to_string(e.step % 1000 / 100) + " s, J";
-        if (e.kinetic > 0) report.relative("kinetic energy" + at, e.kinetic, now.kinetic_translation, e.kinetic_tolerance, peers);
-        report.relative("potential energy" + at, e.potential, now.potential, e.potential_tolerance, peers);
+Means run(const SimulationOptions& options, const Column& column, const Energies (&energies)[n], int steps, int seeds) {
+    Means mean{std::vector<double>(n), std::vector<double>(n), {}};
+    for (int seed = 1; seed <= seeds; ++seed) {
+        const Scene scene = column_scene(column, static_cast<std::uint64_t>(seed));
+        Simulation s(scene, place_particles(scene), options);
+        for (std::size_t k = 0; k < n && energies[k].step <= steps; ++k) {
+            s.run(static_cast<std::uint64_t>(energies[k].step) - s.step_count());
+            s.check_health();
+            mean.kinetic[k] += s.statistics().kinetic_translation / seeds;
+            mean.potential[k] += s.statistics().potential / seeds;
+        }
+        const Deposit d = measure(s.frame().position, column.channel());
+        for (const auto field : deposit_fields) mean.deposit.*field += d.*field / seeds;
     }
-    return s;
+    return mean;
 }
 
 template <std::size_t n>
-void deposit(Report& report, const Column& column, const Simulation& s, const Figure (&figures)[n], const Lines& lines) {
-    const Deposit d = measure(s.frame().position, column.channel());
+void compare_energies(Report& report, const Means& mean, const Energies (&energies)[n], int steps) {
+    for (std::size_t k = 0; k < n && energies[k].step <= steps; ++k) {
+        const Energies& e = energies[k];
+        const std::string at = " at " + std::to_string(e.step / 1000) + "." + std::to_string(e.step % 1000 / 100) + " s, J";
+        if (e.kinetic > 0) report.relative("kinetic energy" + at, e.kinetic, mean.kinetic[k], e.kinetic_tolerance, peers);
+        report.relative("potential energy" + at, e.potential, mean.potential[k], e.potential_tolerance, peers);
+    }
+}
+
+template <std::size_t n>
+void compare_deposit(Report& report, const Deposit& d, const Figure (&figures)[n]) {
     for (const Figure& f : figures) {
         if (f.tolerance == 0) report.shown(f.name, f.expected, d.*f.value, peers);
         else if (f.relative) report.relative(f.name, f.expected, d.*f.value, f.tolerance, peers);
         else report.absolute(f.name, f.expected, d.*f.value, f.tolerance, peers);
     }
-    report.absolute("angle_top, deg", lines.top, d.top.angle, 0.6, peers);
-    report.absolute("angle_mass, deg", lines.mass, d.mass.angle, 0.6, peers);
+}
+
+template <std::size_t n>
+void start(Report& report, const Column& column, const Energies (&energies)[n]) {
+    compare_energies(report, run(report.options, column, energies, 2000, 1), energies, 2000);
+}
+
+template <std::size_t n, std::size_t m>
+void whole(Report& report, const Column& column, const Energies (&energies)[n], const Figure (&figures)[m], int steps, int seeds) {
+    const Means mean = run(report.options, column, energies, steps, seeds);
+    compare_energies(report, mean, energies, steps);
+    compare_deposit(report, mean.deposit, figures);
 }
 
 }  // namespace
@@ -93,9 +124,9 @@ Scene column_scene(const Column& c, std::uint64_t seed) {
     return s;
 }
 
-void column_a_start(Report& report) { run(report, column_A, energies_A, 2000); }
-void column_b_start(Report& report) { run(report, column_B, energies_B, 2000); }
-void column_a(Report& report) { deposit(report, column_A, run(report, column_A, energies_A, 10000), deposit_A, angles_A); }
-void column_b(Report& report) { deposit(report, column_B, run(report, column_B, energies_B, 8000), deposit_B, angles_B); }
+void column_a_start(Report& report) { start(report, column_A, energies_A); }
+void column_b_start(Report& report) { start(report, column_B, energies_B); }
+void column_a(Report& report) { whole(report, column_A, energies_A, deposit_A, 10000, 3); }
+void column_b(Report& report) { whole(report, column_B, energies_B, deposit_B, 8000, 3); }
 
 }  // namespace grainray::validation

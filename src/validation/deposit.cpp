@@ -9,6 +9,11 @@ namespace {
 
 constexpr double pi = 3.14159265358979323846, nan = std::numeric_limits<double>::quiet_NaN();
 
+/// A least-squares line through (x, h): its slope as an angle downwards in degrees, and r2.
+struct Line {
+    double angle, r2;
+};
+
 double degrees(double radians) { return radians * 180 / pi; }
 
 Line fit(const std::vector<double>& x, const std::vector<double>& h) {
@@ -76,8 +81,9 @@ Profile profile(const std::vector<Vec3d>& centres, const Channel& c) {
             for (std::size_t k = p.x.size(); k <= i; ++k) p.x.push_back((static_cast<double>(k) + 0.5) * bin);
         }
         p.top[i] = std::max(p.top[i], q.z + c.radius);
-        p.mass[i] += volume / (bin * c.width * 0.6);
+        ++p.mass[i];
     }
+    for (double& m : p.mass) m = m * volume / (bin * c.width * 0.6);  // counts until here
     return p;
 }
 
@@ -102,8 +108,11 @@ Deposit measure(const std::vector<Vec3d>& centres, const Channel& c) {
     d.h_wall = std::accumulate(p.top.begin(), p.top.begin() + static_cast<std::ptrdiff_t>(first), 0.0) / static_cast<double>(first);
     d.angle_secant = degrees(std::atan(d.h_wall / d.x_edge));
     const auto bins = static_cast<std::size_t>(std::count_if(p.x.begin(), p.x.end(), [&](double mid) { return mid < d.x_edge; }));
-    d.top = flank(p.x, p.top, bins);
-    d.mass = flank(p.x, p.mass, bins);
+    const Line top = flank(p.x, p.top, bins), mass = flank(p.x, p.mass, bins);
+    d.angle_top = top.angle;
+    d.r2_top = top.r2;
+    d.angle_mass = mass.angle;
+    d.r2_mass = mass.r2;
     d.angle_steep = steepest(p, bins, c);
     return d;
 }

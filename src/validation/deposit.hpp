@@ -17,18 +17,15 @@ struct Profile {
 };
 Profile profile(const std::vector<Vec3d>& centres, const Channel&);
 
-/// A least-squares line through (x, h): its slope as an angle downwards in degrees, and r2. NaN below 3 points.
-struct Line {
-    double angle, r2;
-};
-
+/// Angles in degrees; NaN where fewer than 3 points make a line.
 struct Deposit {
     double x_edge;         ///< where the smoothed h_mass falls below 4 r: the end of the contiguous bed
     double x_toe;          ///< the same at 2 r
     double x_50, x_95, x_99, x_max, z_mean;
     double h_wall;         ///< mean h_top over the first five bins
     double angle_secant;   ///< atan(h_wall / x_edge), degrees
-    Line top, mass;        ///< lines through 20 to 80 % of the greatest height, behind its place
+    double angle_top, r2_top;    ///< line through h_top from 20 to 80 % of its greatest value, behind the place of that
+    double angle_mass, r2_mass;  ///< the same with h_mass
     double angle_steep;    ///< the steepest line over 0.4 of the column's length
 };
 Deposit measure(const std::vector<Vec3d>& centres, const Channel&);

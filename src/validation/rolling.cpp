@@ -103,8 +103,8 @@ void turntable(Report& report) {
     Motion motion;
     motion.rotation_axis = {0, 0, 1};
     motion.rotation_rate = rate;
-    Trial t(dt, law, law, {0, 0, -g});
-    t.plane({}, {0, 0, 1}, motion);
+    Trial t(dt, law, law, {0, 0, -g}), drag = t;
+    for (Trial* table : {&t, &drag}) table->plane({}, {0, 0, 1}, motion);
     const Vec3d x{1, 0, r - u}, v{0, speed, 0};
     // No slip: v + w x (-arm n) = rate n x x
     const Vec3d slip = v - cross(Vec3d{0, 0, rate}, x), w = cross(Vec3d{0, 0, 1}, slip) * (1 / arm);
@@ -119,9 +119,7 @@ void turntable(Report& report) {
     report.relative("distance from the circle's centre, m", speed / orbit, length(s.frame().position[0] - centre), 1e-2, "v / (2/7 rate)");
     compare(report, "one round", s, t.yardstick, 1e-2, 1e-3);
 
-    Trial drag = t;  // at rest on the table: dragged by sliding friction
-    drag.initial.velocities[0] = drag.initial.angular_velocities[0] = {};
-    drag.yardstick.spheres[0].v = drag.yardstick.spheres[0].w = {};
+    drag.sphere(x);
     Simulation d = drag.start(report);
     run(d, drag.yardstick, 500);
     report.relative("at rest on it: speed after 0.05 s, m/s", law.mu * g * 0.05, length(convert<double>(d.frame().velocity[0])), 1e-3, "mu g t");

@@ -1,0 +1,77 @@
+// info, render, bench: that they answer, and that their figures hang together.
+#include "grainray/output.hpp"
+#include "process.hpp"
+
+namespace grainray::cli_test {
+namespace {
+
+TEST(Info, NamesDevicesAndBackEnds) {
+    const Folder folder;
+    const Result r = folder.grainray({"info"});
+    ASSERT_EQ(r.status, 0) << r.err;
+    for (const char* word : {"device cpu", "threads", "device cuda", "search brute", "search cells", "search rays", "not built yet", "RT cores", "oneTBB"})
+        EXPECT_NE(r.out.find(word), std::string::npos) << "no '" << word << "' in\n" << r.out;
+    EXPECT_NE(folder.grainray({"info", "--schema"}).out.find("normal_stiffness"), std::string::npos);
+}
+
+TEST(Render, FrameFolderAndMistakes) {
+    const Folder folder;
+    folder.write("pair.toml", two_spheres());
+    ASSERT_EQ(folder.grainray({"run", "pair.toml", "--out", "out"}).status, 0);
+    const Result one = folder.grainray({"render", "out/frames/000002.vtp", "--size", "64x48", "--color-by", "radius", "--out", "one.png"});
+    EXPECT_EQ(one.status, 0) << one.err;
+    EXPECT_EQ(folder.read("one.png").substr(1, 3), "PNG");
+    const Result all = folder.grainray({"render", "out", "--size", "64x48", "--eye", "-1,-1,1", "--target", "0,0,0", "--min", "0", "--max", "1"});
+    EXPECT_EQ(all.status, 0) << all.err;
+    EXPECT_TRUE(fs::exists(folder / "out/pictures/000000.png"));
+    EXPECT_TRUE(fs::exists(folder / "out/pictures/000005.png"));
+    for (const Arguments& wrong : std::vector<Arguments>{{"--size", "64"}, {"--eye", "1,2"}, {"--min", "1", "--max", "0"}, {"--color-by", "colour"}, {"--out", "a.jpg"}, {"--fov", "190"}}) {
+        Arguments arguments{"render", "out/frames/000002.vtp"};
+        arguments.insert(arguments.end(), wrong.begin(), wrong.end());
+        const Result r = folder.grainray(arguments);
+        EXPECT_EQ(r.status, 2) << wrong[0];
+        EXPECT_NE(r.err.find(wrong[1]), std::string::npos) << r.err;
+    }
+    fs::copy(folder / "out/frames/000002.vtp", folder / "lone.vtp");
+    EXPECT_NE(folder.grainray({"render", "lone.vtp"}).err.find("--scene"), std::string::npos);
+    EXPECT_EQ(folder.grainray({"render", "lone.vtp", "--scene", "pair.toml", "--size", "16x16"}).status, 0);
+    EXPECT_TRUE(fs::exists(folder / "lone.png"));
+}
+
+TEST(Bench, StepsOfTheColumn) {
+    const Folder folder;
+    const Result r = folder.grainray({"bench", "step", "--scene", "collapse", "--steps", "20", "--warmup", "5", "--json", "step.json"});
+    ASSERT_EQ(r.status, 0) << r.err;
+    for (const char* word : {"neighbors", "contacts", "boundary", "dynamics", "share"}) EXPECT_NE(r.out.find(word), std::string::npos) << r.out;
+    const auto json = nlohmann::json::parse(folder.read("step.json"));
+    EXPECT_EQ(json["particles"], 20160);
+    EXPECT_EQ(json["steps"], 20);
+    EXPECT_NEAR(json["particle_steps_per_second"].get<double>(), 20160 * 20 / json["wall_seconds"].get<double>(), 1);
+    for (const char* key : {"steps_per_second", "threads", "device", "profile", "search", "bytes_per_particle", "peak_rss_bytes"})
+        EXPECT_TRUE(json.contains(key)) << key;
+}
+
+TEST(Bench, StepsFromAFileOfPositions) {
+    const Folder folder;
+    folder.write("start.csv", "x,y,z,radius\n0.5,0.5,0.1,0.1\n0.5,0.5,0.29,0.1\n0.9,0.5,0.1,0.1\n");
+    const Result r = folder.grainray({"bench", "step", "--scene", "settled", "--init", "start.csv", "--steps", "10", "--json", "a.json"});
+    ASSERT_EQ(r.status, 0) << r.err;
+    EXPECT_EQ(nlohmann::json::parse(folder.read("a.json"))["particles"], 3);
+}
+
+TEST(Bench, BackEndsFindTheSameNumberOfNeighbours) {
+    const Folder folder;
+    const Result r = folder.grainray({"bench", "neighbors", "--points", "500,1000", "--backend", "all", "--kind", "full", "--device", "cpu", "--json", "n.json"});
+    ASSERT_EQ(r.status, 0) << r.err;
+    const auto results = nlohmann::json::parse(folder.read("n.json"))["results"];
+    ASSERT_EQ(results.size() % 4, 0u);
+    const std::size_t backends = results.size() / 4;
+    for (std::size_t i = 0; i < results.size(); ++i) {
+        EXPECT_EQ(results[i]["list_entries"], results[i / backends * backends]["list_entries"]);
+        EXPECT_GT(results[i]["mean_neighbors"].get<double>(), 5);
+        EXPECT_GT(results[i]["neighbors_per_second"].get<double>(), 0);
+    }
+}
+
+}  // namespace
+}  // namespace grainray::cli_test
