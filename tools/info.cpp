@@ -55,7 +55,7 @@ int info(bool schema) {
     print_backends(Device::cpu);
     fmt::print("device cuda  {}\n", cuda_status());
     print_backends(Device::cuda);
-    fmt::print("runs         {}\n", gpu_runs_status());
+    fmt::print("runs         on {}\n", cuda_available() ? "cuda (--device cpu for the CPU)" : "cpu");
     fmt::print("RT cores     not used: this build has no ray tracing search yet\n");
     print_libraries();
     return done;

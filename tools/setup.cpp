@@ -15,9 +15,6 @@
 namespace grainray::cli {
 namespace {
 
-/// Whole simulations run on the CPU only; turn this on with the CUDA stages.
-constexpr bool gpu_runs_complete = false;
-constexpr const char* gpu_runs_missing = "whole simulations on the GPU are not built yet";
 constexpr int most_threads = 1024;
 
 void require_device_name(const std::string& device) { require_choice("--device", device, {"auto", "cpu", "cuda"}); }
@@ -52,23 +49,20 @@ Device choose_search_device(const std::string& device) {
     return device == "cpu" || !cuda_available() ? Device::cpu : Device::cuda;
 }
 
-std::string gpu_runs_status() { return gpu_runs_complete ? "on cpu and cuda" : fmt::format("on cpu: {}", gpu_runs_missing); }
-
 Engine choose_engine(const EngineOptions& asked, const Scene& scene) {
     require_device_name(asked.device);
     Engine engine;
     if (asked.device == "cuda") {
         if (!cuda_available()) throw InputError("--device cuda: " + cuda_status());
-        if (!gpu_runs_complete) throw InputError(fmt::format("--device cuda: {}; use --device cpu", gpu_runs_missing));
         engine.options.device = Device::cuda;
         engine.device_reason = "asked for";
     } else if (asked.device == "cpu") {
         engine.device_reason = "asked for";
-    } else if (gpu_runs_complete && cuda_available()) {
+    } else if (cuda_available()) {
         engine.options.device = Device::cuda;
         engine.device_reason = cuda_status();
     } else {
-        engine.device_reason = gpu_runs_complete ? cuda_status() : gpu_runs_missing;
+        engine.device_reason = cuda_status();
     }
     const bool by_scene = asked.search == "auto" && scene.search.backend != "auto";
     engine.options.backend = by_scene ? scene.search.backend : asked.search;

@@ -28,8 +28,6 @@ struct Engine {
 };
 /// Throws InputError for a device, back end or number of threads that cannot be had.
 Engine choose_engine(const EngineOptions&, const Scene&);
-/// One sentence: on which devices whole simulations run.
-std::string gpu_runs_status();
 /// For `--device auto|cpu|cuda` where the neighbour search alone is asked for.
 Device choose_search_device(const std::string& device);
 /// Throws InputError for a back end that is not there, `rays` included.

@@ -54,8 +54,8 @@ void add_output_tables(Schema& s) {
         field(&RenderSettings::color_by, {.key = "color_by", .text = "field shown as colour", .choices = color_names()}),
         field(&RenderSettings::color_minimum, {.key = "color_minimum", .text = "value of the first colour; absent: smallest in the picture"}),
         field(&RenderSettings::color_maximum, {.key = "color_maximum", .text = "value of the last colour; absent: largest in the picture"}),
-        field(&RenderSettings::width, {.key = "width", .text = "pixels", .range = {1, 16384}, .typical = "1280"}),
-        field(&RenderSettings::height, {.key = "height", .text = "pixels", .range = {1, 16384}, .typical = "720"})}};
+        field(&RenderSettings::width, {.key = "width", .text = "pixels", .range = {16, 16384}, .typical = "1280"}),
+        field(&RenderSettings::height, {.key = "height", .text = "pixels", .range = {16, 16384}, .typical = "720"})}};
     s.camera = {"render.camera", "Where the picture is taken from; absent: so that everything shows.", {
         field(&Camera::eye, {.key = "eye", .text = "position", .unit = unit::length}),
         field(&Camera::target, {.key = "target", .text = "point looked at", .unit = unit::length}),

@@ -1,5 +1,6 @@
 // A list may be old but never wrong: scenes made to outrun it are compared with runs that search at every step.
 #include "devices.hpp"
+#include "neighbors/interval.hpp"
 #include "scenes.hpp"
 
 namespace grainray::test {
@@ -107,10 +108,27 @@ TEST(Trigger, PublishedWaitsLongerAndMayMiss) {
     EXPECT_LE(published.search().rebuilds, safe.search().rebuilds);
 }
 
+/// A stand-in for a run: lists of n steps have 100 + 2 n entries, making one costs 400 times what an entry costs a step.
+TEST(IntervalTuner, SettlesRoundTheOptimum) {
+    IntervalTuner tuner;
+    double sum = 0;
+    for (int k = 0; k < 400; ++k) {
+        const auto n = static_cast<std::uint64_t>(tuner.interval());
+        const double entries = 100 + 2.0 * static_cast<double>(n);
+        tuner.finished(n, static_cast<std::uint64_t>(entries), 400 * 0.6 * (k % 3 ? 0.7 : 1.6), entries * static_cast<double>(n));
+        if (k >= 100) sum += tuner.interval();
+    }
+    EXPECT_NEAR(sum / 300, std::sqrt(400 / 2.0), 5);  // argmin of 400 / n + 2 n
+    IntervalTuner fixed(33);
+    fixed.finished(10, 10, 1, 1);
+    EXPECT_EQ(fixed.interval(), 33);
+}
+
 TEST(Lists, ACoherentFallNeedsFewRebuilds) {
     Case c = column(10, 8, 10);
     c.scene.planes.clear();
     for (auto& v : c.initial.velocities) v = {5, 0, -20};
+    c.scene.search.interval = 20;
     Simulation s = c.start();
     s.run(200);
     EXPECT_LE(s.search().rebuilds, 200 / 20 + 1u);  // shared motion is no displacement
