@@ -90,6 +90,35 @@ GR_HD void atomic_min(T* address, T value) {
 #endif
 }
 
+/// What each work item of a Finder (neighbors/list.hpp) finds, twice: searching again costs less than keeping it would.
+template <class Finder>
+class Found {
+public:
+    struct Row {
+        Finder finder;
+        std::size_t k;
+        template <class Emit>
+        GR_HD void for_each(const Emit& emit) const {
+            finder.find(k, [&](std::uint32_t j, bool hit) {
+                if (hit) emit(j);
+            });
+        }
+    };
+
+    Found(const Finder& finder, std::size_t items) : finder_(finder), items_(items) {}
+    template <class Visit>
+    void search(const Visit& visit) {
+        const Finder finder = finder_;
+        cuda::for_each(items_, [=] GR_HD(std::size_t k) { visit(k, Row{finder, k}); });
+    }
+    template <class Visit>
+    void again(const Visit& visit) { search(visit); }
+
+private:
+    Finder finder_;
+    std::size_t items_;
+};
+
 inline void synchronize() { check(cudaDeviceSynchronize(), "synchronize"); }
 
 }  // namespace grainray::cuda

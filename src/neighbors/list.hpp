@@ -2,7 +2,7 @@
 //
 // A Finder is copied to the device and gives
 //   index(k)        the point that work item k stands for (a locality-friendly order of the points)
-//   find(k, emit)   calls emit(j) for every pair that index(k) owns
+//   find(k, emit)   calls emit(j, hit) for candidates j, hit where index(k) owns the pair
 #pragma once
 
 #include "exec/exec.hpp"
@@ -41,6 +41,47 @@ GR_HD inline void sort(std::uint32_t* a, std::size_t n) {
     }
 }
 
+/// First pass: how much each row will hold. In the other row of a mirrored pair it is counted atomically.
+template <class Finder>
+struct Count {
+    Finder finder;
+    View<std::uint32_t> own;       ///< found by the row's own point; mirrored entries stand after them
+    View<std::uint64_t> counts;
+    std::uint32_t block;
+
+    template <class Row>
+    GR_HD void operator()(std::size_t k, const Row& row) const {
+        const std::uint32_t i = finder.index(k);
+        std::uint32_t found = 0;
+        row.for_each([&](std::uint32_t j) {
+            ++found;
+            if (i / block != j / block) atomic_add(&counts[j], std::uint64_t{1});
+        });
+        own[i] = found;
+        if (found) atomic_add(&counts[i], std::uint64_t{found});
+    }
+};
+
+/// Second pass.
+template <class Finder>
+struct Fill {
+    Finder finder;
+    View<const std::uint64_t> offsets;
+    View<std::uint64_t> mirror;    ///< where the next mirrored entry of a row goes
+    View<std::uint32_t> entries;
+    std::uint32_t block;
+
+    template <class Row>
+    GR_HD void operator()(std::size_t k, const Row& row) const {
+        const std::uint32_t i = finder.index(k);
+        std::uint64_t slot = offsets[i];
+        row.for_each([&](std::uint32_t j) {
+            entries[slot++] = j;
+            if (i / block != j / block) entries[atomic_add(&mirror[j], std::uint64_t{1})] = i;
+        });
+    }
+};
+
 }  // namespace rows
 
 /// Fills `list` with the rows of `items` work items over `n` points, as Request::kind says.
@@ -49,37 +90,21 @@ void build_list(const Finder& finder, std::size_t items, std::size_t n, const ne
     static_assert(std::is_trivially_copyable_v<Finder>);
     // Blocks generalise the kinds: in one endless block each pair stands once, in blocks of one it stands twice.
     const std::uint32_t block = request.kind == ListKind::half ? 0xffffffffu : request.kind == ListKind::full ? 1u : request.block;
-    Array<std::uint32_t> own_counts(device, n);  // found by the row's own point; mirrored entries stand after them
+    Array<std::uint32_t> own_counts(device, n);
+    Array<std::uint64_t> mirrors(device, n);
+    own_counts.clear_bytes();
     list.offsets.resize_discard(n + 1);
     list.offsets.clear_bytes();
-    own_counts.clear_bytes();
-
     const auto offsets = list.offsets.view();
     const auto own = own_counts.view();
-    for_each(items, [=] GR_HD(std::size_t k) {
-        const std::uint32_t i = finder.index(k);
-        std::uint32_t found = 0;
-        finder.find(k, [&](std::uint32_t j) {
-            ++found;
-            if (i / block != j / block) atomic_add(&offsets[j], std::uint64_t{1});
-        });
-        own[i] = found;
-        if (found) atomic_add(&offsets[i], std::uint64_t{found});
-    }, 256);
-    list.neighbors.resize_discard_slack(exclusive_scan(offsets));
-
-    Array<std::uint64_t> mirrors(device, n);  // where the next mirrored entry of a row goes
     const auto mirror = mirrors.view();
-    const auto entries = list.neighbors.view();
+
+    Found<Finder> found(finder, items);
+    found.search(rows::Count<Finder>{finder, own, offsets, block});
+    list.neighbors.resize_discard_slack(exclusive_scan(offsets));
     for_each(n, [=] GR_HD(std::size_t i) { mirror[i] = offsets[i] + own[i]; });
-    for_each(items, [=] GR_HD(std::size_t k) {
-        const std::uint32_t i = finder.index(k);
-        std::uint64_t slot = offsets[i];
-        finder.find(k, [&](std::uint32_t j) {
-            entries[slot++] = j;
-            if (i / block != j / block) entries[atomic_add(&mirror[j], std::uint64_t{1})] = i;
-        });
-    }, 256);
+    const auto entries = list.neighbors.view();
+    found.again(rows::Fill<Finder>{finder, offsets, mirror, entries, block});
     if (request.ascending)
         for_each(n, [=] GR_HD(std::size_t i) { rows::sort(&entries[offsets[i]], offsets[i + 1] - offsets[i]); });
 }

@@ -36,7 +36,7 @@ GR_HD inline bool pair_test(const Sphere& a, const Sphere& b, const Vec3f& perio
 /// Owner rule: the pair belongs to the point with the larger (reach, id). Since d < R_a + R_b <= 2 R_owner, the owner
 /// finds it in a box of half-width 2 R_owner.
 GR_HD inline bool owns(const Sphere& a, std::uint32_t id_a, const Sphere& b, std::uint32_t id_b) {
-    return a.reach > b.reach || (a.reach == b.reach && id_a > id_b);
+    return (a.reach > b.reach) | ((a.reach == b.reach) & (id_a > id_b));  // no branch: its side is a coin toss
 }
 
 }  // namespace grainray::neighbors

@@ -37,7 +37,7 @@ constexpr Figure deposit_A[] = {
     {"x_edge, m", &Deposit::x_edge, 23.458, 0.01, true},           {"x_95, m", &Deposit::x_95, 20.533, 0.01, true},
     {"x_99, m", &Deposit::x_99, 24.563, 0.01, true},               {"h_wall, m", &Deposit::h_wall, 4.700, 0.03, true},
     {"z_mean, m", &Deposit::z_mean, 1.4946, 0.02, true},           {"angle_secant, deg", &Deposit::angle_secant, 11.329, 0.3, false},
-    {"angle_top, deg", &Deposit::angle_top, 9.145, 0.4, false},    {"angle_mass, deg", &Deposit::angle_mass, 10.094, 0.6, false},
+    {"angle_top, deg", &Deposit::angle_top, 9.145, 0.4, false},    {"angle_mass, deg", &Deposit::angle_mass, 10.094, 0.7, false},
     {"angle_steep, deg", &Deposit::angle_steep, 16.53, 0, false}};
 constexpr Figure deposit_B[] = {
     {"x_edge, m", &Deposit::x_edge, 12.332, 0.01, true},           {"x_95, m", &Deposit::x_95, 11.640, 0.01, true},

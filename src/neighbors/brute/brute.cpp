@@ -14,8 +14,7 @@ struct BrutePairs {
     GR_HD void find(std::size_t k, const Emit& emit) const {
         const neighbors::Sphere a = points[k];
         for (std::size_t j = 0; j < points.size; ++j)
-            if (neighbors::owns(a, ids[k], points[j], ids[j]) && neighbors::pair_test(a, points[j], period))
-                emit(static_cast<std::uint32_t>(j));
+            emit(static_cast<std::uint32_t>(j), neighbors::owns(a, ids[k], points[j], ids[j]) & neighbors::pair_test(a, points[j], period));
     }
 };
 
@@ -27,7 +26,7 @@ struct BruteQueries {
     template <class Emit>
     GR_HD void find(std::size_t k, const Emit& emit) const {
         for (std::size_t j = 0; j < points.size; ++j)
-            if (neighbors::pair_test(queries[k], points[j], period)) emit(static_cast<std::uint32_t>(j));
+            emit(static_cast<std::uint32_t>(j), neighbors::pair_test(queries[k], points[j], period));
     }
 };
 

@@ -16,7 +16,7 @@ struct Sorted {
     GR_HD void find(const neighbors::Sphere& s, float half_width, const Test& test, const Emit& emit) const {
         grid.for_each_run(s, half_width, [&](std::uint32_t first, std::uint32_t last) {
             for (std::uint32_t p = starts[first], end = starts[last]; p < end; ++p)
-                if (test(p)) emit(order[p]);
+                emit(order[p], test(p));
         });
     }
 };
@@ -40,7 +40,7 @@ struct CellPairs {
         const std::uint32_t id = ids[k];
         sorted.find(a, 2 * a.reach, [&](std::uint32_t p) {
             const neighbors::Sphere& b = sorted.spheres[p];
-            return near<periodic>(a, b, period) && neighbors::owns(a, id, b, ids[p]);
+            return near<periodic>(a, b, period) & neighbors::owns(a, id, b, ids[p]);
         }, emit);
     }
 };
