@@ -58,7 +58,7 @@ void inclines(Report& report) {
         const double slope = limit * share, theta = std::atan(slope);
         const bool rolls = share < 1;
         report.relative((rolls ? "rolls at " : "slides at ") + std::to_string(share).substr(0, 4) + " of the limit: acceleration, m/s2",
-                        rolls ? g * std::sin(theta) / (1 + k) : g * (std::sin(theta) - law.mu * std::cos(theta)), acceleration(report, slope, law), 2e-4,
+                        rolls ? g * std::sin(theta) / (1 + k) : g * (std::sin(theta) - law.mu * std::cos(theta)), acceleration(report, slope, law), 5e-4,
                         rolls ? "5/7 g sin, limit tan = 7/2 mu" : "g (sin - mu cos)");
     }
 }
