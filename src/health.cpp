@@ -56,6 +56,7 @@ Checkpoint Simulation::checkpoint() const {
         c.mass.push_back(snap.body[i].mass);
         c.radius_units.push_back(snap.near[i].radius);
         c.velocity.push_back(snap.body[i].velocity);
+        c.velocity_remainder.push_back(snap.remainder[i]);
         c.angular_velocity.push_back(snap.body[i].spin);
     }
     struct Entry {
@@ -92,7 +93,7 @@ std::uint64_t Simulation::state_hash() const {
     std::uint64_t sum = mix(0, impl_->step_number);
     for (std::size_t i = 0; i < snap.size(); ++i) {
         std::uint64_t h = mix(mix(1, snap.id[i]), snap.position(i));
-        h = mix(mix(h, snap.body[i].velocity), snap.body[i].spin);
+        h = mix(mix(mix(h, snap.body[i].velocity), snap.remainder[i]), snap.body[i].spin);
         sum += mix(h, static_cast<std::uint64_t>(snap.near[i].radius));
     }
     snap.for_each_contact([&](const TouchingContact& t) {

@@ -7,7 +7,8 @@
 namespace grainray {
 
 Snapshot::Snapshot(const State& s)
-    : near(s.particles.near.to_host()), far(s.particles.far.to_host()), body(s.particles.body.to_host()), id(s.particles.id.to_host()),
+    : near(s.particles.near.to_host()), far(s.particles.far.to_host()), body(s.particles.body.to_host()), remainder(s.particles.remainder.to_host()),
+      id(s.particles.id.to_host()),
       grain_offsets(s.grains.offsets.to_host()), wall_offsets(s.walls.offsets.to_host()), grain_partners(s.grains.partners.to_host()),
       wall_partners(s.walls.partners.to_host()), grain_history(s.grains.history.to_host()), wall_history(s.walls.history.to_host()),
       planes(s.planes.to_host()), grain_parameters(s.grain_parameters.to_host()), wall_parameters(s.wall_parameters.to_host()),
@@ -159,7 +160,7 @@ SearchReport Simulation::search() const {
 std::size_t Simulation::memory_bytes() const {
     const Impl& s = *impl_;
     const Particles& p = s.state.particles;
-    return p.near.bytes() + p.far.bytes() + p.body.bytes() + p.id.bytes() + s.state.wrench.bytes() + s.state.built.bytes() +
+    return p.near.bytes() + p.far.bytes() + p.body.bytes() + p.remainder.bytes() + s.state.frame.bytes() + p.id.bytes() + s.state.wrench.bytes() + s.state.built.bytes() +
            s.state.grains.bytes() + s.state.walls.bytes() + s.old_grains.bytes() + s.old_walls.bytes() + s.found.offsets.bytes() +
            s.found.neighbors.bytes() + s.old_index.bytes() + s.spheres.bytes() + s.search.memory_bytes();
 }

@@ -22,6 +22,7 @@ struct Snapshot {
     std::vector<Near> near;
     std::vector<Far> far;
     std::vector<Body> body;
+    std::vector<Vec3f> remainder;
     std::vector<std::uint32_t> id;
     std::vector<std::uint64_t> grain_offsets, wall_offsets;
     std::vector<std::uint32_t> grain_partners, wall_partners;

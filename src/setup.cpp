@@ -150,6 +150,7 @@ Simulation::Simulation(const Scene& scene, const InitialState& initial, const Si
     p.near.assign(near);
     p.far.assign(far);
     p.body.assign(body);
+    p.remainder.assign(std::vector<Vec3f>(n));
     p.id.assign(id);
     impl_->prepare();
 }
@@ -208,6 +209,7 @@ Simulation::Simulation(const Scene& scene, const Checkpoint& c, const Simulation
     p.near.assign(near);
     p.far.assign(far);
     p.body.assign(body);
+    p.remainder.assign(c.velocity_remainder);
     p.id.assign(c.id);
     const auto places = [&](std::vector<std::uint32_t> ids) {
         for (auto& id : ids) id = place.at(id);

@@ -14,18 +14,10 @@
 namespace grainray::cli {
 namespace {
 
-/// The widest vector instructions of this machine, and those that every part of this build may use.
+/// The widest vector instructions of this machine; the contact loop uses them, whatever the rest was built for.
 std::string vector_level() {
 #if defined(__x86_64__)
-#if defined(__AVX512F__)
-    const char* built = "AVX-512";
-#elif defined(__AVX2__)
-    const char* built = "AVX2";
-#else
-    const char* built = "SSE2";
-#endif
-    const char* there = __builtin_cpu_supports("avx512f") ? "AVX-512" : __builtin_cpu_supports("avx2") ? "AVX2" : "SSE2";
-    return fmt::format("{} there, {} assumed by this build", there, built);
+    return __builtin_cpu_supports("avx512f") ? "AVX-512" : __builtin_cpu_supports("avx2") ? "AVX2" : "SSE2";
 #elif defined(__aarch64__)
     return "NEON";
 #else

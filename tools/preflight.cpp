@@ -12,7 +12,7 @@
 namespace grainray::cli {
 namespace {
 
-constexpr double risky_step = 0.8;     // share of the critical time step
+constexpr double risky_step = 0.9;     // share of the critical time step
 constexpr double risky_overlap = 0.3;  // of the smaller radius: such grains fly apart
 constexpr double placing_bytes = 100;  // a particle, before the simulation takes it
 

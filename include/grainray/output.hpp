@@ -54,7 +54,7 @@ struct Checkpoint {
     std::vector<Vec3l> position;              ///< fixed point
     std::vector<float> radius, mass;
     std::vector<std::int32_t> radius_units;
-    std::vector<Vec3f> velocity, angular_velocity;
+    std::vector<Vec3f> velocity, velocity_remainder, angular_velocity;  ///< remainder: particles.hpp
     std::vector<std::uint32_t> contact_a, contact_b;  ///< particle ids a > b of every contact with history
     std::vector<Vec3f> contact_history;               ///< tangential elastic force on a, N
     std::vector<std::uint32_t> wall_particle, wall_plane;

@@ -55,10 +55,11 @@ struct PositionScale {
 };
 
 struct Particles {
-    explicit Particles(Device device) : near(device), far(device), body(device), id(device) {}
+    explicit Particles(Device device) : near(device), far(device), body(device), remainder(device), id(device) {}
     Array<Near> near;
     Array<Far> far;
     Array<Body> body;
+    Array<Vec3f> remainder;  ///< what rounding kept from the velocity so far, m/s: added to the next change (Kahan 1965)
     Array<std::uint32_t> id;
     PositionScale scale;
     std::size_t size() const { return near.size(); }

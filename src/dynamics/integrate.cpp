@@ -1,4 +1,5 @@
-// Stage: motion. Symplectic Euler: v += a dt, x += v dt; x in fixed point, so a step is one rounding to a fine unit.
+// Stage: motion. Symplectic Euler: v += a dt, x += v dt; x in fixed point, so a step is one rounding to a fine unit. v is a
+// float with the remainder of its last rounding beside it, else g dt would lose the same bits at every step of a long fall.
 #include "stages.hpp"
 
 #include "exec/exec.hpp"
@@ -16,6 +17,7 @@ struct Integrate {
     View<Near> near;
     View<Far> far;
     View<Body> body;
+    View<Vec3f> remainder;
     View<Wrench> wrench;
     View<const Near> built;
     View<const Vec3f> frame;
@@ -30,14 +32,18 @@ struct Integrate {
         const float r = static_cast<float>(p.radius) * unit;
         const float inverse_mass = 1.0f / b.mass, inverse_inertia = 1.0f / (0.4f * b.mass * (r * r));
         const float dt = constants.dt;
+        Vec3f left = remainder[i];
         for (int a = 0; a < 3; ++a) {
             const float force = static_cast<float>(w.force[a]) * force_quantum;
             const float acceleration = force * inverse_mass + constants.gravity[a];
-            b.velocity[a] += damped(acceleration, b.velocity[a], constants.mass_damping) * dt;
+            const float before = b.velocity[a], change = damped(acceleration, before, constants.mass_damping) * dt + left[a];
+            b.velocity[a] = before + change;
+            left[a] = change - (b.velocity[a] - before);
             b.spin[a] += static_cast<float>(w.torque[a]) * torque_quantum * inverse_inertia * dt;
             w.force[a] = w.torque[a] = 0;
         }
         body[i] = b;
+        remainder[i] = left;
         move(i, p, b.velocity * dt);
     }
 
@@ -67,7 +73,7 @@ struct Integrate {
 
 void integrate(State& s, const StepConstants& constants, float trigger) {
     Particles& p = s.particles;
-    for_each(s.size(), Integrate{p.near.view(), p.far.view(), p.body.view(), s.wrench.view(), s.built.view(), s.frame.view(), s.flags.view(), constants,
+    for_each(s.size(), Integrate{p.near.view(), p.far.view(), p.body.view(), p.remainder.view(), s.wrench.view(), s.built.view(), s.frame.view(), s.flags.view(), constants,
                                  static_cast<float>(p.scale.unit), static_cast<float>(s.quanta.force), static_cast<float>(s.quanta.torque),
                                  static_cast<float>(1.0 / p.scale.fine()), trigger, static_cast<float>(s.age.steps)}, 1024);
 }

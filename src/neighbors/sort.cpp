@@ -91,6 +91,7 @@ void sort(State& s, Array<std::uint32_t>& old_index) {
     permute(p.near, old_index);
     permute(p.far, old_index);
     permute(p.body, old_index);
+    permute(p.remainder, old_index);
     permute(p.id, old_index);
 }
 

@@ -35,6 +35,7 @@ void for_each_array(C& c, Visit visit) {
     visit("mass", c.mass, particles);
     visit("radius_units", c.radius_units, particles);
     visit("velocity", c.velocity, particles);
+    visit("velocity_remainder", c.velocity_remainder, particles);
     visit("angular_velocity", c.angular_velocity, particles);
     visit("contact_a", c.contact_a, contacts);
     visit("contact_b", c.contact_b, contacts);

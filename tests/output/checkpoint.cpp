@@ -30,6 +30,7 @@ Checkpoint sample(std::size_t particles, std::size_t contacts, std::size_t walls
     fill(c.mass, particles);
     fill(c.radius_units, particles);
     fill(c.velocity, particles);
+    fill(c.velocity_remainder, particles);
     fill(c.angular_velocity, particles);
     fill(c.contact_a, contacts);
     fill(c.contact_b, contacts);
@@ -50,7 +51,7 @@ void expect_same(const Checkpoint& a, const Checkpoint& b) {
     EXPECT_EQ(a.state_hash, b.state_hash);
     EXPECT_TRUE(same_bits(a.id, b.id) && same_bits(a.material, b.material) && same_bits(a.position, b.position));
     EXPECT_TRUE(same_bits(a.radius, b.radius) && same_bits(a.mass, b.mass) && same_bits(a.radius_units, b.radius_units));
-    EXPECT_TRUE(same_bits(a.velocity, b.velocity) && same_bits(a.angular_velocity, b.angular_velocity));
+    EXPECT_TRUE(same_bits(a.velocity, b.velocity) && same_bits(a.velocity_remainder, b.velocity_remainder) && same_bits(a.angular_velocity, b.angular_velocity));
     EXPECT_TRUE(same_bits(a.contact_a, b.contact_a) && same_bits(a.contact_b, b.contact_b));
     EXPECT_TRUE(same_bits(a.contact_history, b.contact_history) && same_bits(a.wall_history, b.wall_history));
     EXPECT_TRUE(same_bits(a.wall_particle, b.wall_particle) && same_bits(a.wall_plane, b.wall_plane));
