@@ -11,7 +11,7 @@ install_missing "${LIBRARY_PACKAGES[@]}"
 preset=$(suitable_preset)
 # A build folder that is already configured keeps its options: ninja configures again by itself where it must.
 if [ ! -f "build/$preset/build.ninja" ]; then
-    without_tests=(-D GRAINRAY_TESTS=OFF -D GRAINRAY_BENCHMARKS=OFF)
+    without_tests=(-D GRAINRAY_TESTS=OFF)
     if ! configure "$preset" "${without_tests[@]}"; then
         [ "$preset" = cuda ] || fail "configuring failed; the messages above say why"
         say "configuring with CUDA failed (messages above): building for the CPU instead"

@@ -25,6 +25,13 @@ std::uint64_t mix(std::uint64_t h, const Vec3l& v) {
     return h;
 }
 
+/// The axis along which a centre is outside the domain (0, 1, 2), or -1; periodic axes have no outside.
+int axis_left(const Domain& domain, const Vec3d& x) {
+    for (int a = 0; domain.box && a < 3; ++a)
+        if (!domain.periodic[a] && !(x[a] >= domain.box->lower[a] && x[a] <= domain.box->upper[a])) return a;
+    return -1;
+}
+
 template <class... Arguments>
 std::string format(const char* text, Arguments... arguments) {
     char buffer[512];
@@ -35,7 +42,7 @@ std::string format(const char* text, Arguments... arguments) {
 }  // namespace
 
 Checkpoint Simulation::checkpoint() const {
-    const Snapshot snap(impl_->state);
+    const Snapshot snap(impl_->state, impl_->law);
     const std::size_t n = snap.size();
     Checkpoint c;
     c.step = impl_->step_number;
@@ -89,7 +96,7 @@ Checkpoint Simulation::checkpoint() const {
 
 /// A sum over particles and contacts of hashes keyed by id: the order of storage does not matter.
 std::uint64_t Simulation::state_hash() const {
-    const Snapshot snap(impl_->state);
+    const Snapshot snap(impl_->state, impl_->law);
     std::uint64_t sum = mix(0, impl_->step_number);
     for (std::size_t i = 0; i < snap.size(); ++i) {
         std::uint64_t h = mix(mix(1, snap.id[i]), snap.position(i));
@@ -108,7 +115,7 @@ std::uint64_t Simulation::state_hash() const {
 
 void Simulation::check_health() const {
     const Impl& s = *impl_;
-    const Snapshot snap(s.state);
+    const Snapshot snap(s.state, s.law);
     const std::size_t n = snap.size();
     if (n == 0) return;
     double smallest = snap.radius(0);
@@ -117,6 +124,9 @@ void Simulation::check_health() const {
 
     std::size_t worst = n;
     std::string what;
+    std::string remedy = s.critical_dt > 0 && s.scene.dt > s.critical_dt
+                             ? "Lower simulation.dt"
+                             : "Look for particles placed inside each other, or lower simulation.dt or the stiffness";
     const auto flags = s.state.flags.to_host();
     if (s.rebuilds && flags[1] < n) {
         worst = flags[1];
@@ -124,9 +134,13 @@ void Simulation::check_health() const {
     }
     for (std::size_t i = 0; i < n && worst == n; ++i) {
         const double speed = length(convert<double>(snap.body[i].velocity)), spin = length(convert<double>(snap.body[i].spin));
-        if (std::isfinite(speed) && std::isfinite(spin) && speed <= speed_limit) continue;
+        const int axis = axis_left(s.scene.domain, snap.scale.world(snap.position(i)));
+        if (std::isfinite(speed) && std::isfinite(spin) && speed <= speed_limit && axis < 0) continue;
         worst = i;
-        what = speed > speed_limit ? format("speed %.6g m/s, past the limit of %.6g m/s (limits.speed), of", speed, speed_limit)
+        if (axis >= 0) {
+            what = format("the domain was left along %c (domain.lower, domain.upper) by", "xyz"[axis]);
+            remedy = "Enlarge the domain or close it with planes";
+        } else what = speed > speed_limit ? format("speed %.6g m/s, past the limit of %.6g m/s (limits.speed), of", speed, speed_limit)
                                    : std::string("a velocity or spin that is not finite, of");
     }
     std::string neighbors;
@@ -147,12 +161,12 @@ void Simulation::check_health() const {
     const Vec3d x = snap.scale.world(snap.position(worst));
     const Body& b = snap.body[worst];
     throw SimulationError(
-        format("unstable at t = %.6g s (step %llu): ", s.time(), static_cast<unsigned long long>(s.step_number)) + what +
+        format("stopped at t = %.6g s (step %llu): ", s.time(), static_cast<unsigned long long>(s.step_number)) + what +
         format(" particle %u at (%.6g, %.6g, %.6g) m, radius %.4g m, velocity (%.4g, %.4g, %.4g) m/s", snap.id[worst], x.x, x.y, x.z,
                snap.radius(worst), b.velocity.x, b.velocity.y, b.velocity.z) +
         "; touching: " + (neighbors.empty() ? "nothing" : neighbors) +
         format("; dt = %.3g s, critical dt = %.3g s. ", s.scene.dt, s.critical_dt) +
-        (s.critical_dt > 0 && s.scene.dt > s.critical_dt ? "Lower simulation.dt" : "Look for particles placed inside each other, or lower simulation.dt or the stiffness"));
+        remedy);
 }
 
 }  // namespace grainray

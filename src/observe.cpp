@@ -6,13 +6,13 @@
 
 namespace grainray {
 
-Snapshot::Snapshot(const State& s)
+Snapshot::Snapshot(const State& s, ContactLaw contact_law)
     : near(s.particles.near.to_host()), far(s.particles.far.to_host()), body(s.particles.body.to_host()), remainder(s.particles.remainder.to_host()),
       id(s.particles.id.to_host()),
       grain_offsets(s.grains.offsets.to_host()), wall_offsets(s.walls.offsets.to_host()), grain_partners(s.grains.partners.to_host()),
       wall_partners(s.walls.partners.to_host()), grain_history(s.grains.history.to_host()), wall_history(s.walls.history.to_host()),
       planes(s.planes.to_host()), grain_parameters(s.grain_parameters.to_host()), wall_parameters(s.wall_parameters.to_host()),
-      scale(s.particles.scale), period(s.period), period_lower(s.period_lower), block(s.block), materials(s.materials) {}
+      scale(s.particles.scale), period(s.period), period_lower(s.period_lower), block(s.block), materials(s.materials), law(contact_law) {}
 
 Vec3l Snapshot::position(std::size_t i) const {
     Vec3l p = join(near[i], far[i]);
@@ -25,42 +25,52 @@ Vec3l Snapshot::position(std::size_t i) const {
     return p;
 }
 
-void Snapshot::for_each_contact(const std::function<void(const TouchingContact&)>& visit) const {
-    const LinearLaw still{0};  // dt 0: the force as the history stands, without advancing it
-    const float unit = static_cast<float>(scale.unit);
-    for (std::uint32_t i = 0; i < size(); ++i) {
-        const Body& a = body[i];
-        for (std::uint64_t e = grain_offsets[i]; e < grain_offsets[i + 1]; ++e) {
-            const std::uint32_t j = grain_partners[e];
-            if (i / block != j / block && j > i) continue;  // stands in both rows
-            const Separation s = separation(near[i], far[i], near[j], far[j], period);
-            if (s.gap <= 0) continue;
-            const Body& b = body[j];
-            Vec3f h = grain_history[e];
-            const PairForce f = pair_force(still, s, near[i].radius, near[j].radius, a.velocity - b.velocity, a.spin, b.spin,
-                                           0.5f * (a.mass + b.mass), grain_parameters[a.material * materials + b.material], unit, h);
-            const double radii = radius(i) + radius(j);
-            const double overlap = static_cast<double>(s.gap) * scale.unit * scale.unit /
-                                   (radii + length(Vec3d{double(s.x), double(s.y), double(s.z)}) * scale.unit);
-            visit({i, j, false, overlap, f.force, grain_history[e]});
+namespace {
+
+/// One pass over the lists; `law` has a step of 0, so that forces are as the histories stand.
+template <class Law>
+void visit_contacts(const Snapshot& s, const Law& law, const std::function<void(const TouchingContact&)>& visit) {
+    const float unit = static_cast<float>(s.scale.unit);
+    for (std::uint32_t i = 0; i < s.size(); ++i) {
+        const Body& a = s.body[i];
+        for (std::uint64_t e = s.grain_offsets[i]; e < s.grain_offsets[i + 1]; ++e) {
+            const std::uint32_t j = s.grain_partners[e];
+            if (i / s.block != j / s.block && j > i) continue;  // stands in both rows
+            const Separation apart = separation(s.near[i], s.far[i], s.near[j], s.far[j], s.period);
+            if (apart.gap <= 0) continue;
+            const Body& b = s.body[j];
+            Vec3f h = s.grain_history[e];
+            const PairForce f = pair_force(law, apart, s.near[i].radius, s.near[j].radius, a.velocity - b.velocity, a.spin, b.spin,
+                                           0.5f * (a.mass + b.mass), s.grain_parameters[a.material * s.materials + b.material], unit, h);
+            const double distance = length(Vec3d{double(apart.x), double(apart.y), double(apart.z)}) * s.scale.unit;
+            const double overlap = static_cast<double>(apart.gap) * s.scale.unit * s.scale.unit / (s.radius(i) + s.radius(j) + distance);
+            visit({i, j, false, overlap, f.force, s.grain_history[e]});
         }
-        for (std::uint64_t e = wall_offsets[i]; e < wall_offsets[i + 1]; ++e) {
-            const std::uint32_t q = wall_partners[e];
-            const Vec3d x = scale.local(join(near[i], far[i]));
-            const double overlap = radius(i) - dot(planes[q].normal, x - planes[q].point);
+        for (std::uint64_t e = s.wall_offsets[i]; e < s.wall_offsets[i + 1]; ++e) {
+            const std::uint32_t q = s.wall_partners[e];
+            const PlaneNow& plane = s.planes[q];
+            const Vec3d x = s.scale.local(join(s.near[i], s.far[i]));
+            const double overlap = s.radius(i) - dot(plane.normal, x - plane.point);
             if (overlap <= 0) continue;
-            const Vec3f n = convert<float>(planes[q].normal);
-            const PairParameters& p = wall_parameters[a.material * planes.size() + q];
-            const Vec3f v = a.velocity - planes[q].velocity - cross(planes[q].spin, convert<float>(x - planes[q].centre));
-            const float vn = dot(v, n), root_mass = std::sqrt(a.mass);
-            visit({i, q, true, overlap, n * (p.kn * static_cast<float>(overlap) - p.cn * root_mass * vn) + wall_history[e], wall_history[e]});
+            const Vec3f n = convert<float>(plane.normal), arm = n * static_cast<float>(s.radius(i) - 0.5 * overlap);
+            const Vec3f wall_velocity = plane.velocity + cross(plane.spin, convert<float>(x - plane.centre) - arm);
+            Vec3f h = s.wall_history[e];
+            const Vec3f force = law(Contact{n, static_cast<float>(overlap), a.velocity - cross(a.spin, arm) - wall_velocity, a.mass},
+                                    s.wall_parameters[a.material * s.planes.size() + q], h);
+            visit({i, q, true, overlap, force, s.wall_history[e]});
         }
     }
 }
 
+}  // namespace
+
+void Snapshot::for_each_contact(const std::function<void(const TouchingContact&)>& visit) const {
+    with_law(law, 0.0f, [&](const auto& still) { visit_contacts(*this, still, visit); });
+}
+
 Statistics Simulation::statistics() const {
     const Impl& s = *impl_;
-    const Snapshot snap(s.state);
+    const Snapshot snap(s.state, s.law);
     Statistics out;
     out.step = s.step_number;
     out.time = s.time();
@@ -101,7 +111,7 @@ Statistics Simulation::statistics() const {
 }
 
 Frame Simulation::frame() const {
-    const Snapshot snap(impl_->state);
+    const Snapshot snap(impl_->state, impl_->law);
     const std::size_t n = snap.size();
     Frame f;
     f.step = impl_->step_number;
@@ -161,8 +171,7 @@ std::size_t Simulation::memory_bytes() const {
     const Impl& s = *impl_;
     const Particles& p = s.state.particles;
     return p.near.bytes() + p.far.bytes() + p.body.bytes() + p.remainder.bytes() + s.state.frame.bytes() + p.id.bytes() + s.state.wrench.bytes() + s.state.built.bytes() +
-           s.state.grains.bytes() + s.state.walls.bytes() + s.old_grains.bytes() + s.old_walls.bytes() + s.found.offsets.bytes() +
-           s.found.neighbors.bytes() + s.old_index.bytes() + s.spheres.bytes() + s.search.memory_bytes();
+           s.state.grains.bytes() + s.state.walls.bytes() + s.old_grains.bytes() + s.old_walls.bytes() + s.old_index.bytes() + s.spheres.bytes() + s.search.memory_bytes();
 }
 
 }  // namespace grainray

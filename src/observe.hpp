@@ -3,7 +3,7 @@
 
 #include <functional>
 
-#include "contacts/linear.hpp"
+#include "contacts/laws.hpp"
 #include "simulation_impl.hpp"
 
 namespace grainray {
@@ -18,7 +18,7 @@ struct TouchingContact {
 };
 
 struct Snapshot {
-    explicit Snapshot(const State&);
+    Snapshot(const State&, ContactLaw);
     std::vector<Near> near;
     std::vector<Far> far;
     std::vector<Body> body;
@@ -32,6 +32,7 @@ struct Snapshot {
     PositionScale scale;
     Vec3l period, period_lower;
     std::uint32_t block, materials;
+    ContactLaw law;
 
     std::size_t size() const { return near.size(); }
     /// Fixed-point position, inside the periodic box.

@@ -2,14 +2,19 @@
 #include <algorithm>
 #include <numeric>
 
+#include "contacts/laws.hpp"
 #include "exec/exec.hpp"
 #include "simulation_impl.hpp"
 
 namespace grainray {
 
 ContactLaw contact_law(const std::string& name) {
-    if (name == "linear") return ContactLaw::linear;
-    throw InputError("contact law '" + name + "' is not known; known is: linear");
+    std::string known;
+    for (const auto& [law, law_name] : law_names) {
+        if (name == law_name) return law;
+        known += (known.empty() ? "" : ", ") + std::string(law_name);
+    }
+    throw InputError("contact law '" + name + "' is not known; known: " + known);
 }
 
 const Stages& stages(Device device) {
@@ -89,7 +94,7 @@ void set_period(const Scene& scene, State& state) {
 
 Simulation::Impl::Impl(const Scene& s, const SimulationOptions& o, const PositionScale& scale, const InitialState& sizes)
     : scene(s), options(o), threads(o.threads), state(o.device), search(o.device), stage(stages(o.device)),
-      law(contact_law(s.contact.law)), old_grains(o.device), old_walls(o.device), found(o.device), old_index(o.device),
+      law(contact_law(s.contact.law)), old_grains(o.device), old_walls(o.device), old_index(o.device),
       spheres(o.device) {
     const std::size_t n = sizes.size(), nm = scene.materials.size();
     state.particles.scale = scale;

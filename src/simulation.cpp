@@ -65,10 +65,13 @@ void Simulation::Impl::update_lists() {
     stage.margins(state, constants, margin_rule, spheres);
 
     const float* s = spheres.data();
-    search.find(Points{s, s + 1, s + 2, 4, s + 3, 4, 0, state.particles.id.data(), state.size()}, found);
     std::swap(state.grains, old_grains);
-    state.grains.offsets.swap(found.offsets);
-    state.grains.partners.swap(found.neighbors);
+    NeighborList found(options.device);  // borrows the memory of the list before last
+    found.offsets.swap(state.grains.offsets);
+    found.neighbors.swap(state.grains.partners);
+    search.find(Points{s, s + 1, s + 2, 4, s + 3, 4, 0, state.particles.id.data(), state.size()}, found);
+    found.offsets.swap(state.grains.offsets);
+    found.neighbors.swap(state.grains.partners);
     state.grains.history.resize_discard_slack(state.grains.partners.size());
     stage.carry_pairs(old_grains, old_index, state.grains);
 

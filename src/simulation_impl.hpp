@@ -23,7 +23,6 @@ struct Simulation::Impl {
     IntervalTuner tuner;
     Profile list_start;                      ///< the profile when the present list was begun
     ContactList old_grains, old_walls;       ///< the lists before the last build; their memory is the next one's
-    NeighborList found;
     Array<std::uint32_t> old_index;
     Array<float> spheres;                    ///< x y z reach, handed to the search
 

@@ -1,5 +1,5 @@
 // Stage: planes. A plane is a half-space: the overlap is r - signed distance, however deep a centre may lie.
-#include "contacts/linear.hpp"
+#include "contacts/laws.hpp"
 #include "exec/exec.hpp"
 #include "stages.hpp"
 
@@ -101,15 +101,12 @@ void wall_candidates(State& s, const StepConstants& constants, ContactList& wall
 }
 
 void walls(State& s, ContactLaw law, const StepConstants& constants) {
-    const auto run = [&](auto functor) {
+    with_law(law, constants.dt, [&](auto functor) {
         for_each(s.size(), WallForces<decltype(functor)>{functor, centres_of(s), s.particles.body.view(), s.walls.offsets.view(),
                                                          s.walls.partners.view(), s.walls.history.view(), s.planes.view(),
                                                          s.wall_parameters.view(), s.wrench.view(), s.particles.scale.unit,
                                                          1.0 / s.quanta.force, 1.0 / s.quanta.torque});
-    };
-    switch (law) {
-        case ContactLaw::linear: return run(LinearLaw{constants.dt});
-    }
+    });
 }
 
 }  // namespace grainray::GRAINRAY_EXEC

@@ -1,7 +1,7 @@
-// Stage: forces between particles. A law adds one line to the switch.
+// Stage: forces between particles.
 #include "stages.hpp"
 
-#include "contacts/linear.hpp"
+#include "contacts/laws.hpp"
 #include "exec/pairs.hpp"
 
 namespace grainray::GRAINRAY_EXEC {
@@ -11,9 +11,7 @@ void contacts(State& s, ContactLaw law, const StepConstants& constants) {
                         s.grains.partners.view(), s.grains.history.view(), s.grain_parameters.view(), s.materials, s.block,
                         static_cast<float>(s.particles.scale.unit), 1.0 / s.quanta.force, 1.0 / s.quanta.torque, s.period,
                         s.wrench.view()};
-    switch (law) {
-        case ContactLaw::linear: return for_each_touching_pair(loop, LinearLaw{constants.dt});
-    }
+    with_law(law, constants.dt, [&](auto functor) { for_each_touching_pair(loop, functor); });
 }
 
 }  // namespace grainray::GRAINRAY_EXEC

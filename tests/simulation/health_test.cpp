@@ -36,6 +36,16 @@ TEST(Health, SpeedLimitIsNamed) {
     EXPECT_EQ(failure(c.start()), "healthy");
 }
 
+TEST(Health, LeavingTheDomainIsNamed) {
+    Case c = empty_case();
+    c.scene.domain.box = Box{{-1, -1, -1}, {1, 1, 1}};
+    c.add({0, 0.5, 0}, 0.1, {0, 30, 0});
+    Simulation s = c.start();
+    EXPECT_EQ(failure(s), "healthy");
+    s.run(50);
+    EXPECT_NE(failure(s).find("domain was left along y"), std::string::npos) << failure(s);
+}
+
 TEST(Health, UnstableStepBlowsUpAndIsCaught) {
     Case c = column(6, 6, 6);
     c.scene.materials[0].normal_stiffness = 1e9;
@@ -45,7 +55,7 @@ TEST(Health, UnstableStepBlowsUpAndIsCaught) {
         s.run(10);
         message = failure(s);
     }
-    EXPECT_NE(message.find("unstable at t ="), std::string::npos);
+    EXPECT_NE(message.find("stopped at t ="), std::string::npos);
     EXPECT_NE(message.find("Lower simulation.dt"), std::string::npos) << message;
 }
 
