@@ -76,6 +76,15 @@ std::uint32_t block_size(Device device, std::size_t n, int threads) {
     return static_cast<std::uint32_t>(std::max<std::size_t>((n + blocks - 1) / blocks, 512));
 }
 
+/// Fixed-point position of particle i; an error names it.
+Vec3l fixed_position(const PositionScale& scale, const Vec3d& x, std::size_t i) {
+    try {
+        return scale.fixed(x);
+    } catch (const InputError& e) {
+        throw InputError("particle " + std::to_string(i) + ": " + e.what());
+    }
+}
+
 void set_period(const Scene& scene, State& state) {
     for (int a = 0; a < 3; ++a) {
         if (!scene.domain.periodic[a]) continue;
@@ -145,7 +154,7 @@ Simulation::Simulation(const Scene& scene, const InitialState& initial, const Si
     std::vector<std::uint32_t> id(n);
     std::iota(id.begin(), id.end(), 0u);
     for (std::size_t i = 0; i < n; ++i) {
-        const Vec3l x = p.scale.fixed(initial.positions[i]);
+        const Vec3l x = fixed_position(p.scale, initial.positions[i], i);
         const double r = initial.radii[i], density = scene.materials[initial.materials[i]].density;
         near[i] = {near_of(x.x), near_of(x.y), near_of(x.z), static_cast<std::int32_t>(std::llrint(r / p.scale.unit))};
         far[i] = far_of(x);

@@ -16,6 +16,11 @@ Plane read_plane(const Node& table, const std::string& name, const Scene& s) {
     read_table(table, schema().plane, plane, {"motion"});
     check_material(table.child("material"), plane.material, s);
     plane.normal = unit_vector(table, "normal", plane.normal);
+    for (int axis = 0; axis < 3; ++axis)
+        if (s.domain.periodic[static_cast<std::size_t>(axis)] && std::fabs(plane.normal[axis]) > 1e-12)
+            fail_key(table, "normal",
+                     fmt::format("faces the periodic axis {0}, along which every particle goes round and would meet the plane from "
+                                 "behind; give a normal without {0} or close the axis in domain.periodic", "xyz"[axis]));
 
     Motion& m = plane.motion;
     const Node motion = table.child("motion"), rotation = motion.child("rotation"),

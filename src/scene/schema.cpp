@@ -64,7 +64,7 @@ void add_output_tables(Schema& s) {
 }
 
 void add_material_tables(Schema& s) {
-    s.material = {"materials.NAME", "A material. Damping is a fraction beta of c = 2 beta sqrt(m k).", {
+    s.material = {"materials.NAME", "A material. Damping is a fraction beta of c = 2 beta sqrt(m k), m the mean mass of the two particles (the particle's own against a plane).", {
         field(&Material::density, {.key = "density", .text = "of the solid", .unit = unit::density, .range = positive, .typical = "2000 kg/m^3"}),
         field(&Material::normal_stiffness, {.key = "normal_stiffness", .text = "k_n", .unit = unit::stiffness, .range = positive, .typical = "1e5 N/m"}),
         field(&Material::tangential_stiffness, {.key = "tangential_stiffness", .text = "k_t", .unit = unit::stiffness, .range = non_negative, .typical = "1e5 N/m"}),

@@ -75,6 +75,7 @@ const std::vector<BadScene> values{
     {"field_of_view", minimal + "[render.camera]\nfield_of_view = 180\n", "6:17", {"greater than 0 deg and less than 180 deg"}},
     {"periodic_without_box", minimal + "[domain]\nperiodic = [false, true, false]\n", "6:12", {"axis y is periodic", "'lower' and 'upper'"}},
     {"periodic_not_boolean", minimal + "[domain]\nperiodic = [0, 1, 0]\n", "6:13", {"key 'domain.periodic[0]' = 0", "expected true or false"}},
+    {"plane_across_periodic", minimal + "[domain]\nperiodic = [false, true, false]\nlower = [0, 0, 0]\nupper = [1, 1, 1]\n[materials.a]\n[planes.p]\nmaterial = \"a\"\npoint = [0, 0, 0]\nnormal = [0, 1, 1]\n", "13:10", {"key 'planes.p.normal'", "periodic axis y", "domain.periodic"}},
     {"half_a_box", minimal + "[domain]\nlower = [0, 0, 0]\n", "6:9", {"a box needs both corners; add 'upper'"}},
     {"box_inside_out", minimal + "[domain]\nlower = [0, 0, 2]\nupper = [1, 1, 2]\n", "7:9", {"key 'domain.upper'", "greater than 'lower' along z (2 m)"}},
     {"friction_unit", minimal + "[materials.a]\nfriction = \"0.5 N\"\n", "6:12", {"wrong dimension", "no unit"}},
