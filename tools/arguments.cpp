@@ -1,8 +1,13 @@
 #include "arguments.hpp"
 
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
 #include <charconv>
 #include <cmath>
 #include <string_view>
+#include <system_error>
 
 #include <fmt/format.h>
 
@@ -10,6 +15,8 @@
 
 namespace grainray::cli {
 namespace {
+
+constexpr std::int64_t most_steps = 1'000'000'000'000'000;  // as a scene's duration may have
 
 /// The whole of text as a T, or false.
 template <class T>
@@ -56,6 +63,19 @@ std::string one_line(std::string text) {
     return text;
 }
 
+/// "; an integer is wanted" where CLI11 could not read the value of an option.
+std::string wanted(const CLI::App& at, const CLI::ParseError& error) {
+    if (error.get_name() != "ConversionError") return "";
+    const std::string text = std::string(error.what()) + ' ';
+    for (const CLI::Option* option : at.get_options())
+        for (const std::string& name : option->get_lnames())
+            if (text.find("--" + name + ' ') != std::string::npos) {
+                const std::string type = option->get_type_name();
+                return type == "INT" || type.starts_with('N') ? "; an integer is wanted" : "; a number is wanted";
+            }
+    return "";
+}
+
 }  // namespace
 
 Vec3d parse_vector(const std::string& option, const std::string& text) {
@@ -86,6 +106,34 @@ void require_at_least(const std::string& option, std::int64_t value, std::int64_
     if (value < least) throw InputError(fmt::format("{}: {} is too small; give {} or more", option, value, least));
 }
 
+void require_steps(const std::string& option, std::int64_t steps, std::int64_t least) {
+    require_at_least(option, steps, least);
+    if (steps > most_steps) throw InputError(fmt::format("{}: {} is too large; at most 1e15 steps can be counted", option, steps));
+}
+
+void require_finite(const std::string& option, const std::optional<double>& value) {
+    if (value && !std::isfinite(*value)) throw InputError(fmt::format("{}: {} is not a finite number", option, *value));
+}
+
+void require_writable(const std::string& option, const std::filesystem::path& path) {
+    if (path.empty()) return;
+    std::error_code ignored;
+    int error = std::filesystem::is_directory(path, ignored) ? EISDIR : 0;
+    const std::string probe = path.string() + ".tmp";  // as the writer names it
+    if (const int file = error ? -1 : open(probe.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666); file >= 0) {
+        close(file);
+        unlink(probe.c_str());
+    } else if (!error) {
+        error = errno;
+    }
+    if (error)
+        throw InputError(fmt::format("{}: {} cannot be written: {}; give another file", option, path.string(), std::generic_category().message(error)));
+}
+
+CLI::Validator not_empty() {
+    return CLI::Validator([](std::string& text) { return text.empty() ? std::string("the name is empty") : std::string(); }, "");
+}
+
 void add_overrides(CLI::App& app, std::vector<std::string>& overrides) {
     app.add_option("--set", overrides, "Change a key of the scene, as often as needed: --set materials.grain.friction=0.3")
         ->type_name("KEY=VALUE")->allow_extra_args(false);
@@ -101,11 +149,13 @@ std::string parse_mistake(const CLI::App& app, const CLI::ParseError& error) {
             const std::string name = word.substr(0, word.find('='));
             return fmt::format("unknown option '{}'{} For all options {}", name, nearest(name, option_names(at)), help);
         } else if (first.empty()) first = word;
-    if (first.empty()) return fmt::format("{}; {}", one_line(error.what()), help);
+    if (first.empty()) return fmt::format("{}{}; {}", one_line(error.what()), wanted(at, error), help);
     if (!at.get_subcommands([](const CLI::App*) { return true; }).empty())
         return fmt::format("unknown command '{}'{} For all commands {}", first, nearest(first, command_names(at)), help);
     return fmt::format("unexpected argument '{}'; {}", first, help);
 }
+
+std::string counted(std::uint64_t count, std::string_view what) { return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s"); }
 
 std::string short_number(double value) {
     if (!std::isfinite(value)) return "-";

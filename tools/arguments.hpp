@@ -2,7 +2,10 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <CLI/CLI.hpp>
@@ -25,12 +28,23 @@ void require_choice(const std::string& option, const std::string& value, const s
 /// Throws InputError where the value is below the least allowed.
 void require_at_least(const std::string& option, std::int64_t value, std::int64_t least);
 
+/// Throws InputError where the number of steps is below `least` or too large to be counted.
+void require_steps(const std::string& option, std::int64_t steps, std::int64_t least);
+/// Throws InputError for nan and inf.
+void require_finite(const std::string& option, const std::optional<double>& value);
+/// Throws InputError where a file at `path` could not be written; leaves nothing behind. Empty: none is wanted.
+void require_writable(const std::string& option, const std::filesystem::path&);
+/// For names of files: "" is a mistake, such as a variable of the shell that is not set.
+CLI::Validator not_empty();
+
 /// --set key=value, any number of times; each takes one argument, so a scene may follow.
 void add_overrides(CLI::App&, std::vector<std::string>&);
 
 /// One sentence for what CLI11 found wrong; unknown commands and options come with the nearest name.
 std::string parse_mistake(const CLI::App&, const CLI::ParseError&);
 
+/// "1 particle", "2 particles"
+std::string counted(std::uint64_t count, std::string_view what);
 /// "1234567.8" -> "1.23 M" and the like, for people.
 std::string short_number(double);
 /// Seconds as "12.3 s", "4 min 5 s", "3 h 12 min".

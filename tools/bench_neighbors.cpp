@@ -100,6 +100,7 @@ int bench_neighbors(const Options& options) {
     require_choice("--kind", options.kind, {"half", "full"});
     for (const std::int64_t n : options.points) require_at_least("--points", n, 1);
     require_at_least("--threads", options.threads, 0);
+    require_writable("--json", options.json);
     const Device device = choose_search_device(options.device);
     if (options.backend != "all") require_backend("--backend", options.backend, device);
     const ThreadLimit limit(options.threads);
@@ -131,7 +132,7 @@ void add_bench_neighbors(CLI::App& bench, Action& chosen) {
     command->add_option("--kind", options->kind, "half: each pair once; full: in both rows")->capture_default_str();
     command->add_option("--device", options->device, "auto, cpu or cuda")->capture_default_str();
     command->add_option("--threads", options->threads, "CPU threads; 0: all")->capture_default_str();
-    command->add_option("--json", options->json, "Write the figures to this file")->type_name("FILE");
+    command->add_option("--json", options->json, "Write the figures to this file")->type_name("FILE")->check(not_empty());
     command->footer("Example: grainray bench neighbors --points 1000,100000 --backend all --json neighbors.json");
     command->callback([options, &chosen] { chosen = [options] { return bench_neighbors(*options); }; });
 }

@@ -80,8 +80,8 @@ nlohmann::ordered_json report(const Simulation& simulation, const Options& optio
 
 void print_table(const nlohmann::ordered_json& json, const Measured& m) {
     const double steps = static_cast<double>(std::max<std::uint64_t>(m.steps, 1));
-    fmt::print("{}: {} particles, {} steps on {} with {} threads, search {}\n", json["scene"].get<std::string>(), json["particles"].get<std::uint64_t>(),
-               m.steps, json["device"].get<std::string>(), json["threads"].get<int>(), m.search.backend);
+    fmt::print("{}: {}, {} on {} with {} threads, search {}\n", json["scene"].get<std::string>(), counted(json["particles"].get<std::uint64_t>(), "particle"),
+               counted(m.steps, "step"), json["device"].get<std::string>(), json["threads"].get<int>(), m.search.backend);
     fmt::print("  {:<10} {:>10} {:>7}\n", "stage", "ms a step", "share");
     double rest = m.wall_seconds;
     for (const auto& [stage, value] : json["profile"].items()) {
@@ -100,8 +100,9 @@ int bench_step(const Options& options) {
     const bool settled = options.scene == "settled";
     const std::int64_t steps = options.steps.value_or(settled ? settled_steps : collapse_steps);
     const std::int64_t warmup = options.warmup.value_or(settled ? settled_warmup : 0);
-    require_at_least("--steps", steps, 1);
-    require_at_least("--warmup", warmup, 0);
+    require_steps("--steps", steps, 1);
+    require_steps("--warmup", warmup, 0);
+    require_writable("--json", options.json);
     const ThreadLimit limit(options.engine.threads);
     const Scene scene = scene_for(options);
     const Engine engine = choose_engine(options.engine, scene);
@@ -123,7 +124,7 @@ void add_bench_step(CLI::App& bench, Action& chosen) {
     command->add_option("--init", options->init, "Start from these particles: columns x y z radius [vx vy vz]")->type_name("FILE.csv");
     command->add_option("--steps", options->steps, "Steps that are timed")->type_name("N");
     command->add_option("--warmup", options->warmup, "Steps before")->type_name("N");
-    command->add_option("--json", options->json, "Write the figures to this file")->type_name("FILE");
+    command->add_option("--json", options->json, "Write the figures to this file")->type_name("FILE")->check(not_empty());
     add_engine_options(*command, options->engine);
     command->footer("Example: grainray bench step --scene collapse --steps 500 --threads 1 --json step.json");
     command->callback([options, &chosen] { chosen = [options] { return bench_step(*options); }; });

@@ -44,7 +44,7 @@ void print_particles(const Scene& scene, const InitialState& s) {
         fmt::print("  {:<16} {:.0f} of material {}\n", scene.particles[g].name, counts[g], scene.particles[g].material);
     std::map<std::uint32_t, std::size_t> of_material;
     for (const std::uint32_t m : s.materials) ++of_material[m];
-    for (const auto& [m, count] : of_material) fmt::print("  material {:<7} {} particles\n", scene.materials[m].name, count);
+    for (const auto& [m, count] : of_material) fmt::print("  material {:<7} {}\n", scene.materials[m].name, counted(count, "particle"));
     if (s.size() == 0) return;
     const auto [least, most] = std::minmax_element(s.radii.begin(), s.radii.end());
     const Box box = *bounds(s);
@@ -62,7 +62,7 @@ void print_overlaps(const Scene& scene, const Overlaps& o) {
 }
 
 void print_steps(const Scene& scene, const std::vector<CriticalStep>& steps) {
-    fmt::print("time step    {:.4g} s, {} steps\n", scene.dt, scene.steps());
+    fmt::print("time step    {:.4g} s, {}\n", scene.dt, counted(scene.steps(), "step"));
     if (steps.empty()) return;
     std::size_t width = 7;
     for (const CriticalStep& step : steps) width = std::max(width, step.contact.size());
@@ -108,7 +108,7 @@ int check(const Options& options) {
     print_overlaps(scene, preflight.overlaps);
     print_steps(scene, preflight.steps);
     if (!preflight.first_refusal()) print_probe(scene, particles, preflight, engine);
-    for (const Finding& finding : preflight.findings) fmt::print("{:<12} {}\n", finding.refused ? "refused" : "warning", finding.text);
+    for (const Finding& finding : preflight.findings) fmt::print("{:<12} {}\n", finding.weight == Weight::refused ? "refused" : finding.weight == Weight::note ? "note" : "warning", finding.text);
     if (const Finding* refusal = preflight.first_refusal()) {
         fmt::print("verdict      refused\n");
         std::fflush(stdout);

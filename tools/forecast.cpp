@@ -30,12 +30,12 @@ std::vector<double> expected_counts(const Scene& scene) {
     return counts;
 }
 
-Forecast forecast(const Scene& scene, double particles) {
+Forecast forecast(const Scene& scene, double particles, std::uint64_t steps) {
     Forecast f;
     f.memory_bytes = state_bytes * particles;
     f.peak_bytes = process_bytes + peak_bytes * particles;
     f.frame_bytes = particles * (scene.output.format == "csv" ? csv_bytes : vtp_bytes) + file_bytes;
-    const double frames = scene.output.frames > 0 ? std::floor(scene.duration / std::max(scene.output.frames, scene.dt)) + 1 : 2;
+    const double frames = scene.output.frames > 0 ? std::floor(static_cast<double>(steps) * scene.dt / std::max(scene.output.frames, scene.dt)) + 1 : 2;
     f.disk_bytes = frames * f.frame_bytes + 2 * checkpoint_bytes * particles;  // the old checkpoint goes when the new one is there
     return f;
 }

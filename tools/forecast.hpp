@@ -17,6 +17,7 @@ struct Forecast {
     double frame_bytes = 0;       ///< of one frame on disk
     double disk_bytes = 0;        ///< of all output
 };
-Forecast forecast(const Scene&, double particles);
+/// steps: how many are run.
+Forecast forecast(const Scene&, double particles, std::uint64_t steps);
 
 }  // namespace grainray::cli

@@ -1,7 +1,10 @@
 // The command line: reads it, runs the subcommand, turns every error into one line and an exit status.
+#include <cerrno>
 #include <csignal>
 #include <cstdio>
+#include <iostream>
 #include <new>
+#include <system_error>
 
 #include <fmt/format.h>
 
@@ -45,6 +48,14 @@ void add_commands(CLI::App& app, Action& chosen) {
     add_validate(app, chosen);
 }
 
+/// What was printed may be lost, on a full disk for example, only when the last of it is written.
+int written(int status) {
+    std::cout.flush();
+    if (std::fflush(stdout) == 0 && !std::ferror(stdout) && std::cout) return status;
+    const std::string why = errno ? ": " + std::generic_category().message(errno) : "";
+    return report("standard output cannot be written" + why, status == done ? simulation_failed : status);
+}
+
 int parse_and_run(int argc, char** argv) {
     CLI::App app("grainray: granular material, grain by grain", "grainray");
     Action chosen;
@@ -52,11 +63,11 @@ int parse_and_run(int argc, char** argv) {
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& e) {
-        if (e.get_exit_code() == 0) return app.exit(e);  // --help, --version
+        if (e.get_exit_code() == 0) return written(app.exit(e));  // --help, --version
         return report(parse_mistake(app, e), input_wrong);
     }
     if (!chosen) return report("no command given; see grainray --help", input_wrong);
-    return chosen();
+    return written(chosen());
 }
 
 }  // namespace

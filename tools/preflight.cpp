@@ -14,10 +14,39 @@ namespace {
 
 constexpr double risky_step = 0.9;     // share of the critical time step
 constexpr double risky_overlap = 0.3;  // of the smaller radius: such grains fly apart
+constexpr double whole_tolerance = 1e-6;  // within it a number of steps counts as whole
 constexpr double placing_bytes = 100;  // a particle, before the simulation takes it
 
-void warn(Preflight& p, std::string text) { p.findings.push_back({false, std::move(text)}); }
-void refuse(Preflight& p, std::string text) { p.findings.push_back({true, std::move(text)}); }
+void warn(Preflight& p, std::string text) { p.findings.push_back({Weight::warning, std::move(text)}); }
+void refuse(Preflight& p, std::string text) { p.findings.push_back({Weight::refused, std::move(text)}); }
+void note(Preflight& p, std::string text) { p.findings.push_back({Weight::note, std::move(text)}); }
+
+/// True for 3, 3.0000001 and the like.
+bool is_whole(double steps) { return std::abs(steps - std::round(steps)) <= whole_tolerance * std::max(steps, 1.0); }
+
+void inspect_duration(const Scene& scene, Preflight& p) {
+    const double steps = scene.duration / scene.dt;
+    if (scene.duration > 0 && scene.steps() == 0)
+        return refuse(p, fmt::format("simulation.duration = {} s is less than half a step of {} s, so there is no step to run; raise it, or make it 0 for the start alone",
+                                     scene.duration, scene.dt));
+    if (!is_whole(steps))
+        note(p, fmt::format("simulation.duration = {} s is {:.10g} steps of {} s; {} are run, to t = {:.10g} s", scene.duration, steps, scene.dt,
+                            scene.steps(), static_cast<double>(scene.steps()) * scene.dt));
+}
+
+void inspect_interval(const char* key, double interval, double dt, Preflight& p) {
+    if (!(interval > 0)) return;
+    const double steps = interval / dt;
+    if (steps < 1 - whole_tolerance) warn(p, fmt::format("{} = {} s is shorter than simulation.dt = {} s; it is written every step", key, interval, dt));
+    else if (!is_whole(steps))
+        note(p, fmt::format("{} = {} s is {:.10g} steps; it is written every {:.0f} steps, {:.10g} s", key, interval, steps, std::round(steps), std::round(steps) * dt));
+}
+
+void inspect_intervals(const Scene& scene, Preflight& p) {
+    inspect_interval("output.frames", scene.output.frames, scene.dt, p);
+    inspect_interval("output.history", scene.output.history, scene.dt, p);
+    inspect_interval("output.checkpoints", scene.output.checkpoints, scene.dt, p);
+}
 
 void inspect_steps(const Scene& scene, Preflight& p) {
     for (const CriticalStep& step : p.steps) {  // smallest critical step first
@@ -68,12 +97,12 @@ StepVerdict verdict(const CriticalStep& step, double dt) {
 }
 
 const Finding* Preflight::first_refusal() const {
-    const auto found = std::find_if(findings.begin(), findings.end(), [](const Finding& f) { return f.refused; });
+    const auto found = std::find_if(findings.begin(), findings.end(), [](const Finding& f) { return f.weight == Weight::refused; });
     return found == findings.end() ? nullptr : &*found;
 }
 
 std::size_t Preflight::warnings() const {
-    return static_cast<std::size_t>(std::count_if(findings.begin(), findings.end(), [](const Finding& f) { return !f.refused; }));
+    return static_cast<std::size_t>(std::count_if(findings.begin(), findings.end(), [](const Finding& f) { return f.weight == Weight::warning; }));
 }
 
 InitialState place_checked(const Scene& scene) {
@@ -87,16 +116,20 @@ InitialState place_checked(const Scene& scene) {
     return place_particles(scene);
 }
 
-Preflight inspect(const Scene& scene, const InitialState& s, bool restarted) {
+std::uint64_t RunRange::last(const Scene& scene) const { return asked ? first + *asked : std::max(first, scene.steps()); }
+
+Preflight inspect(const Scene& scene, const InitialState& s, const RunRange& range) {
     Preflight p;
-    p.needs = forecast(scene, static_cast<double>(s.size()));
+    p.needs = forecast(scene, static_cast<double>(s.size()), range.last(scene) - range.first);
+    if (!range.asked) inspect_duration(scene, p);
+    inspect_intervals(scene, p);
     if (s.size() == 0) {
         warn(p, "the scene has no particles: nothing will move");
         return p;
     }
     p.steps = critical_steps(scene, s);
     inspect_steps(scene, p);
-    if (!restarted) {
+    if (!range.restarted) {
         p.overlaps = initial_overlaps(scene, s);
         inspect_overlaps(scene, p);
         inspect_speeds(scene, s, p);
@@ -108,7 +141,7 @@ Preflight inspect(const Scene& scene, const InitialState& s, bool restarted) {
 void insist(const Preflight& p, bool quiet) {
     if (const Finding* refusal = p.first_refusal()) throw InputError(refusal->text);
     for (const Finding& finding : p.findings)
-        if (!quiet) fmt::print(stderr, "grainray: warning: {}\n", finding.text);
+        if (!quiet) fmt::print(stderr, "grainray: {}: {}\n", finding.weight == Weight::note ? "note" : "warning", finding.text);
 }
 
 void inspect_disk(const std::filesystem::path& folder, Preflight& p) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,8 +12,10 @@
 
 namespace grainray::cli {
 
+enum class Weight { note, warning, refused };
+
 struct Finding {
-    bool refused;      ///< cannot work; else a warning
+    Weight weight;     ///< refused: cannot work
     std::string text;  ///< one sentence with the field to change
 };
 
@@ -30,9 +33,15 @@ struct Preflight {
 
 /// Places the particles of a scene that fits into this machine's memory; InputError where it cannot fit.
 InitialState place_checked(const Scene&);
-/// restarted: positions come from a checkpoint, so those of the scene are not looked at.
-Preflight inspect(const Scene&, const InitialState&, bool restarted = false);
-/// Warnings to stderr; throws InputError for what is refused.
+/// What a run does with a scene besides running it from its start to its end.
+struct RunRange {
+    bool restarted = false;             ///< positions come from a checkpoint: those of the scene are not looked at
+    std::optional<std::uint64_t> asked;  ///< --steps: the duration is not looked at
+    std::uint64_t first = 0;            ///< step it starts from
+    std::uint64_t last(const Scene&) const;  ///< step it ends at, at least the first
+};
+Preflight inspect(const Scene&, const InitialState&, const RunRange& = {});
+/// Warnings and notes to stderr; throws InputError for what is refused.
 void insist(const Preflight&, bool quiet);
 /// Adds a warning where the output is forecast to fill the disk of `folder`.
 void inspect_disk(const std::filesystem::path& folder, Preflight&);

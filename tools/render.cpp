@@ -51,6 +51,8 @@ RenderSettings settings_for(const Options& options, const Scene& scene) {
     if (!options.color_by.empty()) s.color_by = options.color_by;
     if (options.minimum) s.color_minimum = options.minimum;
     if (options.maximum) s.color_maximum = options.maximum;
+    require_finite("--min", options.minimum);
+    require_finite("--max", options.maximum);
     if (s.color_minimum && s.color_maximum && !(*s.color_maximum > *s.color_minimum))
         throw InputError(fmt::format("--max: {} must be greater than the first colour's value, {}", *s.color_maximum, *s.color_minimum));
     if (!options.eye.empty()) s.camera.eye = parse_vector("--eye", options.eye);
@@ -113,8 +115,8 @@ void add_render(CLI::App& app, Action& chosen) {
     CLI::App* command = app.add_subcommand("render", "Draw a frame, or every frame of a run, as PNG");
     const auto o = std::make_shared<Options>();
     command->add_option("FRAME", o->input, "Frame file (.vtp, .csv), or the folder of a run for all its frames")->required()->type_name("");
-    command->add_option("--scene", o->scene, "Scene with planes and camera; else FRAME/../../scene.toml")->type_name("FILE");
-    command->add_option("--out", o->out, "Picture, or folder for pictures; else DIR/pictures of the run")->type_name("PNG|DIR");
+    command->add_option("--scene", o->scene, "Scene with planes and camera; else FRAME/../../scene.toml")->type_name("FILE")->check(not_empty());
+    command->add_option("--out", o->out, "Picture, or folder for pictures; else DIR/pictures of the run")->type_name("PNG|DIR")->check(not_empty());
     command->add_option("--color-by", o->color_by, "Field shown as colour, such as speed, radius, coordination")->type_name("FIELD");
     command->add_option("--min", o->minimum, "Value of the first colour; else the smallest in each picture")->type_name("VALUE");
     command->add_option("--max", o->maximum, "Value of the last colour; else the largest in each picture")->type_name("VALUE");

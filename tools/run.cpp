@@ -1,12 +1,14 @@
 // grainray run: scene -> folder of results.
 #include <chrono>
 #include <cstdio>
+#include <optional>
 
 #include <fmt/format.h>
 
 #include "arguments.hpp"
 #include "commands.hpp"
 #include "preflight.hpp"
+#include "restart.hpp"
 #include "run_loop.hpp"
 #include "setup.hpp"
 #include "summary.hpp"
@@ -24,25 +26,6 @@ struct Options {
     bool force = false, quiet = false;
 };
 
-/// Throws InputError where the checkpoint is not one of this scene.
-void require_fit(const Scene& scene, const InitialState& particles, const Checkpoint& c, const fs::path& file) {
-    const auto reject = [&](const std::string& why) { throw InputError(fmt::format("--restart {}: {}", file.string(), why)); };
-    if (c.id.size() != particles.size())
-        reject(fmt::format("it holds {} particles and the scene {}; give the scene it was made with (scene.toml beside it)", c.id.size(), particles.size()));
-    if (c.dt != scene.dt)
-        reject(fmt::format("its time step is {} s and the scene's {} s; restart with the same one: --set simulation.dt={}", c.dt, scene.dt, c.dt));
-    for (const std::uint32_t m : c.material)
-        if (m >= scene.materials.size())
-            reject(fmt::format("it uses material number {} and the scene has {}; give the scene it was made with", m + 1, scene.materials.size()));
-    for (std::size_t k = 0; k < c.id.size(); ++k)
-        if (c.id[k] < particles.size() && c.material[k] != particles.materials[c.id[k]])
-            reject(fmt::format("particle {} is of material '{}' in it and of '{}' in the scene; give the scene it was made with", c.id[k],
-                               scene.materials[c.material[k]].name, scene.materials[particles.materials[c.id[k]]].name));
-    for (const std::uint32_t plane : c.wall_plane)
-        if (plane >= scene.planes.size())
-            reject(fmt::format("it uses plane number {} and the scene has {}; give the scene it was made with", plane + 1, scene.planes.size()));
-}
-
 std::string restart_command(const Options& options, const RunFolder& folder, const Simulation& simulation, std::uint64_t last) {
     std::string command = fmt::format("grainray run {} --restart {} --out {}", folder.scene().string(), folder.checkpoint().string(), folder.path().string());
     if (options.steps) command += fmt::format(" --steps {}", last - simulation.step_count());
@@ -59,12 +42,12 @@ public:
 
     int run() {
         goes_on_ = folder_.goes_on_from(options_.restart);
+        std::error_code ignored;
+        if (fs::is_directory(folder_.path(), ignored)) lock_.emplace(folder_.path());
         folder_.check(options_.force, goes_on_);
         Simulation simulation = make_simulation();
         const std::uint64_t first = simulation.step_count();
-        const std::uint64_t asked = options_.steps ? first + static_cast<std::uint64_t>(*options_.steps) : scene_.steps();
-        RunPlan plan = plan_run(scene_, first, std::max(first, asked), goes_on_);
-        std::error_code ignored;
+        RunPlan plan = plan_run(scene_, first, range_.last(scene_), goes_on_);
         plan.has_checkpoint = goes_on_ && fs::equivalent(options_.restart, folder_.checkpoint(), ignored);
         facts_.first_step = first;
         facts_.threads = ThreadLimit::count();
@@ -77,26 +60,35 @@ public:
 private:
     Simulation make_simulation() {
         const InitialState particles = place_checked(scene_);
-        Preflight preflight = inspect(scene_, particles, !options_.restart.empty());
+        std::optional<Checkpoint> checkpoint;
+        if (!options_.restart.empty()) checkpoint = read_checkpoint(options_.restart);
+        if (options_.steps) range_.asked = static_cast<std::uint64_t>(*options_.steps);
+        range_.restarted = checkpoint.has_value();
+        range_.first = checkpoint ? checkpoint->step : 0;
+        if (checkpoint) require_fit(scene_, particles, *checkpoint, options_.restart);
+        Preflight preflight = inspect(scene_, particles, range_);
+        if (checkpoint) inspect_restart(scene_, *checkpoint, range_, preflight);
         inspect_disk(folder_.path(), preflight);
         insist(preflight, options_.quiet);
-        if (options_.restart.empty()) return {scene_, particles, engine_.options};
-        const Checkpoint checkpoint = read_checkpoint(options_.restart);
-        require_fit(scene_, particles, checkpoint, options_.restart);
-        return {scene_, checkpoint, engine_.options};
+        if (!checkpoint) return {scene_, particles, engine_.options};
+        return {scene_, *checkpoint, engine_.options};
     }
 
     void prepare_folder() {
         folder_.create();
+        if (!lock_) {
+            lock_.emplace(folder_.path());
+            folder_.check_still_empty();
+        }
         if (!goes_on_) folder_.clear();
         write_text_atomically(folder_.scene(), scene_.source);
     }
 
     void print_start(const Simulation& simulation, const RunPlan& plan) const {
         if (options_.quiet) return;
-        fmt::print(stderr, "grainray {}: {}{} particles, {} steps of {} s{}, {} ({} threads), to {}\n", GRAINRAY_VERSION,
-                   scene_.title.empty() ? "" : scene_.title + ": ", simulation.size(), plan.last - plan.first, scene_.dt,
-                   plan.first ? fmt::format(" from step {}", plan.first) : "", name(simulation.device()), facts_.threads, folder_.path().string());
+        fmt::print(stderr, "grainray {}: {}{}, {} of {} s{}, {} ({}), to {}\n", GRAINRAY_VERSION,
+                   scene_.title.empty() ? "" : scene_.title + ": ", counted(simulation.size(), "particle"), counted(plan.last - plan.first, "step"), scene_.dt,
+                   plan.first ? fmt::format(" from step {}", plan.first) : "", name(simulation.device()), counted(static_cast<std::uint64_t>(facts_.threads), "thread"), folder_.path().string());
     }
 
     int simulate(Simulation& simulation, const RunPlan& plan) {
@@ -132,7 +124,7 @@ private:
         const std::uint64_t steps = simulation.step_count() - facts_.first_step;
         const double rate = facts_.wall_seconds > 0 ? static_cast<double>(steps) / facts_.wall_seconds : 0;
         if (!options_.quiet)
-            fmt::print(stderr, "done: {} steps in {}, {} particle-steps/s; state {}; results in {}\n", steps, duration_text(facts_.wall_seconds),
+            fmt::print(stderr, "done: {} in {}, {} particle-steps/s; state {}; results in {}\n", counted(steps, "step"), duration_text(facts_.wall_seconds),
                        short_number(rate * static_cast<double>(simulation.size())), hash_text(simulation.state_hash()), folder_.path().string());
         return done;
     }
@@ -148,12 +140,14 @@ private:
     Scene scene_;
     Engine engine_;
     RunFolder folder_;
+    std::optional<FolderLock> lock_;
+    RunRange range_;
     RunFacts facts_;
     bool goes_on_ = false;
 };
 
 int run(const Options& options) {
-    if (options.steps) require_at_least("--steps", *options.steps, 0);
+    if (options.steps) require_steps("--steps", *options.steps, 0);
     return Run(options).run();
 }
 
@@ -164,9 +158,9 @@ void add_run(CLI::App& app, Action& chosen) {
     const auto options = std::make_shared<Options>();
     command->add_option("SCENE", options->scene, "Scene file")->required()->type_name("");
     add_engine_options(*command, options->engine);
-    command->add_option("--out", options->out, "Folder for the results; else the name of the scene with -out")->type_name("DIR");
+    command->add_option("--out", options->out, "Folder for the results; else the name of the scene with -out")->type_name("DIR")->check(not_empty());
     command->add_option("--steps", options->steps, "Steps from where the run starts; else to the end of the scene")->type_name("N");
-    command->add_option("--restart", options->restart, "Checkpoint to go on from, exactly")->type_name("FILE");
+    command->add_option("--restart", options->restart, "Checkpoint to go on from, exactly")->type_name("FILE")->check(not_empty());
     command->add_flag("--force", options->force, "Replace the files of an earlier run in the folder, and no others");
     command->add_flag("--quiet", options->quiet, "Print errors only");
     command->footer("Example: grainray run examples/column_collapse.toml --set materials.grain.friction=0.3 --out smooth\n"

@@ -25,14 +25,33 @@ public:
     void check(bool force, bool goes_on) const;
     /// Makes the folders. Throws InputError where that is not possible.
     void create() const;
+    /// After create(): throws InputError where another run has written there since check() found no folder.
+    void check_still_empty() const;
     /// Removes what an earlier run left: frames, history, checkpoint, summary, scene. Nothing else.
     void clear() const;
     /// Removes frames with a number above `last`.
     void remove_frames_after(std::uint64_t last) const;
 
 private:
+    bool is_of_a_run() const;
+    std::filesystem::path first_to_replace() const;
+
     std::filesystem::path folder_;
     std::string extension_;
+};
+
+/// DIR/.lock, held by the run that writes to DIR; a run that was killed holds none. Gone when the run is over.
+class FolderLock {
+public:
+    /// Throws InputError where another run holds it.
+    explicit FolderLock(const std::filesystem::path& folder);
+    ~FolderLock();
+    FolderLock(const FolderLock&) = delete;
+    FolderLock& operator=(const FolderLock&) = delete;
+
+private:
+    std::string path_;
+    int file_ = -1;
 };
 
 /// The number of a frame file NNNNNN.EXTENSION, or -1.

@@ -1,16 +1,24 @@
 #include "signals.hpp"
 
+#include <unistd.h>
+
 namespace grainray::cli {
 namespace {
 
+constexpr int stopping[] = {SIGINT, SIGTERM, SIGHUP};
 volatile std::sig_atomic_t stop_asked = 0;
 
-extern "C" void ask_to_stop(int) {
-    stop_asked = 1;
+extern "C" void ask_to_stop(int signal) {
+    if (!stop_asked) {
+        stop_asked = 1;
+        return;
+    }
+    constexpr char line[] = "\ngrainray: killed by a second signal; the last checkpoint is what is left\n";
+    [[maybe_unused]] const auto ignored = write(STDERR_FILENO, line, sizeof line - 1);
     struct sigaction kill {};
     kill.sa_handler = SIG_DFL;
-    sigaction(SIGINT, &kill, nullptr);
-    sigaction(SIGTERM, &kill, nullptr);
+    sigaction(signal, &kill, nullptr);
+    raise(signal);  // taken when this handler returns
 }
 
 }  // namespace
@@ -21,13 +29,14 @@ StopSignals::StopSignals() {
     stop.sa_handler = ask_to_stop;
     stop.sa_flags = SA_RESTART;
     sigemptyset(&stop.sa_mask);
-    sigaction(SIGINT, &stop, &interrupt_before_);
-    sigaction(SIGTERM, &stop, &terminate_before_);
+    for (int k = 0; k < 3; ++k) {
+        sigaction(stopping[k], nullptr, &before_[k]);
+        if (stopping[k] != SIGHUP || before_[k].sa_handler != SIG_IGN) sigaction(stopping[k], &stop, nullptr);
+    }
 }
 
 StopSignals::~StopSignals() {
-    sigaction(SIGINT, &interrupt_before_, nullptr);
-    sigaction(SIGTERM, &terminate_before_, nullptr);
+    for (int k = 0; k < 3; ++k) sigaction(stopping[k], &before_[k], nullptr);
 }
 
 bool StopSignals::asked() const { return stop_asked != 0; }

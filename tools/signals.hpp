@@ -1,11 +1,11 @@
-// SIGINT and SIGTERM ask a run to stop after the step it is in; a second signal kills.
+// SIGINT, SIGTERM and SIGHUP ask a run to stop after the step it is in; a second signal says so and kills.
 #pragma once
 
 #include <csignal>
 
 namespace grainray::cli {
 
-/// Catches both signals while it lives.
+/// Catches the signals while it lives; a hang-up that is ignored, as under nohup, stays so.
 class StopSignals {
 public:
     StopSignals();
@@ -15,7 +15,7 @@ public:
     bool asked() const;
 
 private:
-    struct sigaction interrupt_before_{}, terminate_before_{};
+    struct sigaction before_[3]{};
 };
 
 }  // namespace grainray::cli

@@ -81,6 +81,8 @@ Scale rounded(double low, double high, bool low_given, bool high_given) {
 
 Scale choose_scale(const Values& values, const Field& field, const RenderSettings& settings) {
     const auto [minimum, maximum] = std::pair{settings.color_minimum, settings.color_maximum};
+    if (!std::isfinite(maximum.value_or(0) - minimum.value_or(0)))
+        throw InputError(fmt::format("render.color_minimum = {} and render.color_maximum = {} must be finite numbers", minimum.value_or(0), maximum.value_or(0)));
     if (minimum && maximum && !(*minimum < *maximum))
         throw InputError(fmt::format("render.color_minimum = {} must be below render.color_maximum = {}", *minimum, *maximum));
     Values finite;

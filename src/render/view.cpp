@@ -1,5 +1,7 @@
 #include "render/view.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
 #include <numbers>
 
@@ -91,9 +93,17 @@ Fit fit(const View& view, const Subject& subject, const Room& room, const Margin
 void check(const Camera& camera) {
     if (!(camera.field_of_view >= 1 && camera.field_of_view <= 170))
         throw InputError(fmt::format("render.camera.field_of_view = {} must be 1 to 170 degrees", camera.field_of_view));
-    if (!(length(camera.up) > 0)) throw InputError("render.camera.up is no direction: give a vector that is not zero");
+    if (!(length(camera.up) > 0 && std::isfinite(length(camera.up)))) throw InputError("render.camera.up is no direction: give a vector that is not zero");
     if (camera.eye && camera.target && *camera.eye == *camera.target)
         throw InputError("render.camera.eye and render.camera.target are the same point: move one of them");
+}
+
+/// Rays are in single precision: from farther away nothing can be told apart.
+void check_distance(const char* option, const std::optional<Vec3d>& world, const Vec3d& origin, double size) {
+    constexpr double farthest = 1e6;  // times the size of the picture's subject
+    if (!world || length(*world - origin) <= farthest * size) return;
+    throw InputError(fmt::format("render.camera.{0} (--{0}) = {1}, {2}, {3} is too far away: give a point within {4:.3g} m of {5:.3g}, {6:.3g}, {7:.3g}",
+                                 option, world->x, world->y, world->z, farthest * size, origin.x, origin.y, origin.z));
 }
 
 }  // namespace
@@ -112,6 +122,9 @@ Spot View::spot(const Vec3d& p) const {
 View make_view(const RenderSettings& settings, const Subject& subject, const Room& room, const Margins& margins) {
     const Camera& camera = settings.camera;
     check(camera);
+    const double size = std::max(length(room.box.extent()), subject.diagonal());
+    check_distance("eye", camera.eye, subject.origin, size);
+    check_distance("target", camera.target, subject.origin, size);
     View view;
     view.width = static_cast<int>(settings.width);
     view.height = static_cast<int>(settings.height);

@@ -75,7 +75,7 @@ TEST(Failure, NoRoomForTheFirstFrame) {
 TEST(Failure, OutputOfTheCommandItself) {
     const Folder folder;
     folder.write("pair.toml", two_spheres());
-    EXPECT_EQ(folder.grainray({"bench", "step", "--scene", "pair.toml", "--steps", "5", "--json", "absent/figures.json"}).status, 1);
+    EXPECT_EQ(folder.grainray({"bench", "step", "--scene", "pair.toml", "--steps", "5", "--json", "absent/figures.json"}).status, 2);
 }
 
 }  // namespace

@@ -57,6 +57,7 @@ TEST(Restart, AfterTheEndThereIsNothingToDo) {
     const auto hash = folder.summary("pair-out")["state_hash"];
     const Result r = folder.grainray({"run", "pair.toml", "--restart", "pair-out/checkpoint.h5"});
     EXPECT_EQ(r.status, 0) << r.err;
+    EXPECT_NE(r.err.find("raise simulation.duration or give --steps"), std::string::npos) << r.err;
     EXPECT_EQ(folder.summary("pair-out")["steps"], 0);
     EXPECT_EQ(folder.summary("pair-out")["state_hash"], hash);
 }
@@ -73,6 +74,26 @@ TEST(Restart, RefusesAnotherScene) {
     };
     refused("particles.grains.count=[6,6,5]", "216 particles");
     refused("simulation.dt=2e-4", "--set simulation.dt=0.0001");
+}
+
+TEST(Restart, RefusesWhatTheCheckpointDecidesAndNamesWhatChanges) {
+    const Folder folder;
+    folder.write("bed.toml", bed());
+    ASSERT_EQ(folder.grainray({"run", "bed.toml", "--steps", "20", "--out", "first"}).status, 0);
+    const auto restart = [&](const std::string& setting) {
+        return folder.grainray({"run", "bed.toml", "--restart", "first/checkpoint.h5", "--out", "second", "--force", "--steps", "5", "--set", setting});
+    };
+    for (const char* setting : {"materials.grain.density=7800", "particles.grains.radius=0.01", "simulation.seed=2", "particles.grains.velocity=[1,0,0]"}) {
+        const Result r = restart(setting);
+        const std::string text = setting;
+        EXPECT_EQ(r.status, 2) << setting;
+        EXPECT_NE(r.err.find(text.substr(0, text.find('='))), std::string::npos) << r.err;
+    }
+    const Result friction = restart("materials.grain.friction=0.3");
+    EXPECT_EQ(friction.status, 0) << friction.err;
+    EXPECT_NE(friction.err.find("warning: from step 20 on the scene is another than in the checkpoint: materials.grain.friction\n"), std::string::npos) << friction.err;
+    for (const char* setting : {"output.frames=0.001", "materials.grain.normal_stiffness=10 kN/m", "simulation.duration=20.0"})
+        EXPECT_EQ(restart(setting).err.find("warning"), std::string::npos) << setting;
 }
 
 class Interrupted : public testing::TestWithParam<int> {};
@@ -98,7 +119,8 @@ TEST_P(Interrupted, StateIsSavedAndTheRestartIsExact) {
     EXPECT_EQ(count_frames(folder / "out"), (step + 150 + 99) / 100 + 1);
 }
 
-INSTANTIATE_TEST_SUITE_P(Signals, Interrupted, testing::Values(SIGTERM, SIGINT), [](const auto& chosen) { return chosen.param == SIGTERM ? "TERM" : "INT"; });
+INSTANTIATE_TEST_SUITE_P(Signals, Interrupted, testing::Values(SIGTERM, SIGINT, SIGHUP),
+                         [](const auto& chosen) { return chosen.param == SIGTERM ? "TERM" : chosen.param == SIGINT ? "INT" : "HUP"; });
 
 TEST(InterruptedWithSteps, PrintsTheStepsThatAreLeft) {
     const Folder folder;

@@ -1,4 +1,6 @@
 // grainray run: what it leaves, and what it leaves alone.
+#include <signal.h>
+
 #include <algorithm>
 #include <sstream>
 
@@ -107,6 +109,46 @@ TEST(Run, FolderWithFilesIsRefusedAndForceKeepsStrangers) {
     EXPECT_FALSE(fs::exists(folder / "out/frames/000002.vtp"));
     EXPECT_EQ(folder.read("out/notes.txt"), "mine");
     EXPECT_EQ(folder.read("out/frames/overview.txt"), "mine too");
+}
+
+TEST(Run, ForceSparesFilesThatNoRunLeft) {
+    const Folder folder;
+    folder.write("pair.toml", two_spheres());
+    folder.write("data/notes.txt", "mine");
+    EXPECT_EQ(folder.grainray({"run", "pair.toml", "--out", "data", "--steps", "2", "--force"}).status, 0);
+    for (const char* name : {"a/history.csv", "b/frames/000000.csv", "c/scene.toml"}) {
+        folder.write(name, "mine");
+        const std::string out = fs::path(name).begin()->string();
+        const Result r = folder.grainray({"run", "pair.toml", "--out", out, "--force"});
+        EXPECT_EQ(r.status, 2) << r.err;
+        EXPECT_NE(r.err.find(name), std::string::npos) << r.err;
+        EXPECT_EQ(folder.read(name), "mine");
+        EXPECT_FALSE(fs::exists(folder / out / ".lock"));
+    }
+}
+
+TEST(Run, TwoRunsDoNotShareAFolder) {
+    const Folder folder;
+    folder.write("bed.toml", bed());
+    const pid_t child = folder.start({"run", "bed.toml", "--out", "out"});
+    ASSERT_TRUE(wait_for_file(folder / "out/checkpoint.h5", child));
+    const Result second = folder.grainray({"run", "bed.toml", "--out", "out", "--force", "--steps", "1"});
+    EXPECT_EQ(second.status, 2);
+    EXPECT_NE(second.err.find("a run is writing to it"), std::string::npos) << second.err;
+    kill(child, SIGKILL);
+    folder.finish(child);
+    EXPECT_TRUE(fs::exists(folder / "out/.lock"));
+    EXPECT_EQ(folder.grainray({"run", "bed.toml", "--out", "out", "--force", "--steps", "1"}).status, 0);
+    EXPECT_FALSE(fs::exists(folder / "out/.lock"));
+}
+
+TEST(Run, NamesTimesThatAreNoWholeSteps) {
+    const Folder folder;
+    folder.write("pair.toml", two_spheres());
+    const Result r = folder.grainray({"check", "pair.toml", "--set", "simulation.duration=0.02005", "--set", "output.frames=0.00025", "--set", "output.history=1e-5"});
+    EXPECT_EQ(r.status, 0) << r.err;
+    for (const char* words : {"note         simulation.duration", "note         output.frames", "warning      output.history"})
+        EXPECT_NE(r.out.find(words), std::string::npos) << r.out;
 }
 
 TEST(Run, SceneCopyStandsByItself) {

@@ -1,4 +1,8 @@
 // info, render, bench: that they answer, and that their figures hang together.
+#include <sys/wait.h>
+
+#include <cstdlib>
+
 #include "grainray/output.hpp"
 #include "process.hpp"
 
@@ -14,6 +18,16 @@ TEST(Info, NamesDevicesAndBackEnds) {
     EXPECT_NE(folder.grainray({"info", "--schema"}).out.find("normal_stiffness"), std::string::npos);
 }
 
+TEST(Output, ThatIsLostIsAFailure) {
+    const Folder folder;
+    folder.write("pair.toml", two_spheres());
+    for (const std::string words : {"info", "info --schema", "check pair.toml", "--help"}) {
+        const std::string command = "cd " + (folder / "").string() + " && " + GRAINRAY_COMMAND + ' ' + words + " > /dev/full 2> err.txt";
+        EXPECT_EQ(WEXITSTATUS(std::system(command.c_str())), 1) << words;
+        EXPECT_TRUE(folder.read("err.txt").starts_with("grainray: ")) << words;
+    }
+}
+
 TEST(Render, FrameFolderAndMistakes) {
     const Folder folder;
     folder.write("pair.toml", two_spheres());
@@ -25,12 +39,14 @@ TEST(Render, FrameFolderAndMistakes) {
     EXPECT_EQ(all.status, 0) << all.err;
     EXPECT_TRUE(fs::exists(folder / "out/pictures/000000.png"));
     EXPECT_TRUE(fs::exists(folder / "out/pictures/000005.png"));
-    for (const Arguments& wrong : std::vector<Arguments>{{"--size", "64"}, {"--eye", "1,2"}, {"--min", "1", "--max", "0"}, {"--color-by", "colour"}, {"--out", "a.jpg"}, {"--fov", "190"}}) {
+    for (const Arguments& wrong : std::vector<Arguments>{{"--size", "64"}, {"--eye", "1,2"}, {"--min", "1", "--max", "0"}, {"--color-by", "colour"}, {"--out", "a.jpg"}, {"--fov", "190"},
+                                                                {"--min", "nan"}, {"--max", "inf"}, {"--eye", "1e20,0,0"}, {"--eye", "1e300,0,0"}, {"--target", "1e300,0,0"}}) {
         Arguments arguments{"render", "out/frames/000002.vtp"};
         arguments.insert(arguments.end(), wrong.begin(), wrong.end());
         const Result r = folder.grainray(arguments);
         EXPECT_EQ(r.status, 2) << wrong[0];
-        EXPECT_NE(r.err.find(wrong[1]), std::string::npos) << r.err;
+        const bool vector = wrong[1].find("e") != std::string::npos && wrong[1].find(",0") != std::string::npos;
+        EXPECT_NE(r.err.find(vector ? wrong[0] : wrong[1]), std::string::npos) << r.err;
     }
     fs::copy(folder / "out/frames/000002.vtp", folder / "lone.vtp");
     EXPECT_NE(folder.grainray({"render", "lone.vtp"}).err.find("--scene"), std::string::npos);
