@@ -106,7 +106,7 @@ void build_list(const Finder& finder, std::size_t items, std::size_t n, const ne
     const auto entries = list.neighbors.view();
     found.again(rows::Fill<Finder>{finder, offsets, mirror, entries, block});
     if (request.ascending)
-        for_each(n, [=] GR_HD(std::size_t i) { rows::sort(&entries[offsets[i]], offsets[i + 1] - offsets[i]); });
+        for_each(n, [=] GR_HD(std::size_t i) { rows::sort(entries.data + offsets[i], offsets[i + 1] - offsets[i]); });
 }
 
 }  // namespace grainray::GRAINRAY_EXEC
