@@ -26,13 +26,13 @@ struct Integrate {
     float unit, force_quantum, torque_quantum, inverse_fine, trigger, age;  // age: steps since the list was built
 
     GR_HD void operator()(std::size_t i) const {
-        Body b = body[i];
+        Body& b = body[i];
         Wrench& w = wrench[i];
         Near p = near[i];
         const float r = static_cast<float>(p.radius) * unit;
         const float inverse_mass = 1.0f / b.mass, inverse_inertia = 1.0f / (0.4f * b.mass * (r * r));
         const float dt = constants.dt;
-        Vec3f left = remainder[i];
+        Vec3f& left = remainder[i];
         for (int a = 0; a < 3; ++a) {
             const float force = static_cast<float>(w.force[a]) * force_quantum;
             const float acceleration = force * inverse_mass + constants.gravity[a];
@@ -42,8 +42,6 @@ struct Integrate {
             b.spin[a] += static_cast<float>(w.torque[a]) * torque_quantum * inverse_inertia * dt;
             w.force[a] = w.torque[a] = 0;
         }
-        body[i] = b;
-        remainder[i] = left;
         move(i, p, b.velocity * dt);
     }
 
