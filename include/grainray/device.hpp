@@ -85,6 +85,8 @@ public:
         if (size > capacity_) resize_discard(size + size / 8);
         size_ = size;
     }
+    /// Empty, its memory given back.
+    void release() { Array(device_).swap(*this); }
     void clear_bytes() { if (size_) detail::clear(device_, data_, size_ * sizeof(T)); }
 
     void assign(const std::vector<T>& host) {

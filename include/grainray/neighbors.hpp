@@ -42,6 +42,7 @@ struct SearchOptions {
     bool ascending = true;         ///< each row in ascending order (else the order is unspecified)
     Vec3f lower{};                 ///< lower corner of the periodic box
     Vec3f period{};                ///< its length along each axis; 0: not periodic. The nearest image counts, once.
+    bool local_order = false;      ///< near points have near indices: then they are looked at in that order, which is faster
 };
 
 /// Row i: neighbors[offsets[i]] ... neighbors[offsets[i + 1] - 1]. No row has a cap.

@@ -1,10 +1,10 @@
-// Stage: forces between particles.
+// Stage: forces between particles, on the CPU; on CUDA they are part of the fused step (methods/fused.cu).
 #include "stages.hpp"
 
 #include "contacts/laws.hpp"
-#include "exec/pairs.hpp"
+#include "exec/pairs_cpu.hpp"
 
-namespace grainray::GRAINRAY_EXEC {
+namespace grainray::cpu {
 
 void contacts(State& s, ContactLaw law, const StepConstants& constants) {
     const PairLoop loop{s.particles.near.view(), s.particles.far.view(), s.particles.body.view(), s.grains.offsets.view(),
@@ -14,4 +14,4 @@ void contacts(State& s, ContactLaw law, const StepConstants& constants) {
     with_law(law, constants.dt, [&](auto functor) { for_each_touching_pair(loop, functor); });
 }
 
-}  // namespace grainray::GRAINRAY_EXEC
+}  // namespace grainray::cpu

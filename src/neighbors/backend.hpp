@@ -21,7 +21,7 @@ struct Packed {
 struct Request {
     ListKind kind;
     std::uint32_t block;
-    bool ascending;
+    bool ascending, local_order;
     Vec3f lower, period;
     bool periodic() const { return period.x > 0 || period.y > 0 || period.z > 0; }
 };

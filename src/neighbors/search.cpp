@@ -69,7 +69,7 @@ struct NeighborSearch::Impl {
                          "'; known are: " + known_names(device));
     }
 
-    neighbors::Request request() const { return {options.kind, options.block, options.ascending, options.lower, options.period}; }
+    neighbors::Request request() const { return {options.kind, options.block, options.ascending, options.local_order, options.lower, options.period}; }
 
     neighbors::Backend& choose(std::size_t n) {
         if (options.backend != "auto") {
