@@ -1,12 +1,10 @@
 // grainray info: what this build and this machine can do.
 #include <cstdio>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 #include <tbb/version.h>
 
-#include "commands.hpp"
+#include "command.hpp"
 #include "grainray/neighbors.hpp"
 #include "grainray/scene.hpp"
 #include "setup.hpp"
@@ -32,9 +30,8 @@ void print_backends(Device device) {
 }
 
 void print_libraries() {
-    fmt::print("libraries    oneTBB {}.{}, fmt {}.{}.{}, CLI11 {}, nlohmann_json {}.{}.{}, {}\n", TBB_VERSION_MAJOR, TBB_VERSION_MINOR,
-               FMT_VERSION / 10000, FMT_VERSION / 100 % 100, FMT_VERSION % 100, CLI11_VERSION, NLOHMANN_JSON_VERSION_MAJOR,
-               NLOHMANN_JSON_VERSION_MINOR, NLOHMANN_JSON_VERSION_PATCH, GRAINRAY_LIBRARIES);
+    fmt::print("libraries    oneTBB {}.{}, fmt {}.{}.{}, {}\n", TBB_VERSION_MAJOR, TBB_VERSION_MINOR, FMT_VERSION / 10000, FMT_VERSION / 100 % 100,
+               FMT_VERSION % 100, GRAINRAY_LIBRARIES);
 }
 
 std::string cuda_version(int version) { return fmt::format("CUDA {}.{}", version / 1000, version % 1000 / 10); }
@@ -77,11 +74,11 @@ int info(bool schema) {
 }  // namespace
 
 void add_info(CLI::App& app, Action& chosen) {
-    CLI::App* command = app.add_subcommand("info", "Devices, search back ends and why others are not there");
+    Command command(app, chosen, "info", "Devices, search back ends and why others are not there");
     const auto schema = std::make_shared<bool>(false);
-    command->add_flag("--schema", *schema, "Print every key of a scene file: type, unit, default, meaning");
-    command->footer("Example: grainray info --schema | less");
-    command->callback([schema, &chosen] { chosen = [schema] { return info(*schema); }; });
+    command.flag("--schema", *schema, "Print every key of a scene file: type, unit, default, meaning");
+    command.footer("Example: grainray info --schema | less");
+    command.action([schema] { return info(*schema); });
 }
 
 }  // namespace grainray::cli
