@@ -5,10 +5,11 @@
 #include <cstdio>
 #include <random>
 
+#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "commands.hpp"
+#include "command.hpp"
 #include "grainray/neighbors.hpp"
 #include "grainray/output.hpp"
 #include "setup.hpp"

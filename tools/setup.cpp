@@ -21,13 +21,6 @@ void require_device_name(const std::string& device) { require_choice("--device",
 
 }  // namespace
 
-void add_engine_options(CLI::App& app, EngineOptions& options) {
-    app.add_option("--device", options.device, "auto, cpu or cuda")->capture_default_str();
-    app.add_option("--search", options.search, "Neighbour search: auto, brute or cells")->capture_default_str();
-    app.add_option("--threads", options.threads, "CPU threads; 0: all")->capture_default_str();
-    add_overrides(app, options.set);
-}
-
 Scene load_resolved(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
     Scene scene = load_scene(file, overrides);
     scene.source = resolved_text(scene, overrides);

@@ -1,44 +1,15 @@
-// Arrays on a CUDA device, and whether there is one.
+// Arrays on a CUDA device.
 #include "exec/memory.hpp"
 
 #include <cstdint>
-#include <cstdio>
 
 #include "exec/cuda_error.hpp"
+#include "exec/gpus.hpp"
 
 namespace grainray {
 namespace {
 
-struct Probe {
-    bool available = false;
-    std::string status;
-
-    Probe() {
-        int count = 0;
-        const cudaError_t error = cudaGetDeviceCount(&count);
-        if (error != cudaSuccess || count == 0) {
-            status = error == cudaErrorInsufficientDriver ? "the NVIDIA driver is missing or older than this build needs; install or update it"
-                     : error == cudaErrorNoDevice || count == 0 ? "no NVIDIA GPU is visible"
-                                                                : std::string("CUDA: ") + cudaGetErrorString(error);
-            return;
-        }
-        cudaDeviceProp p{};
-        if (cudaGetDeviceProperties(&p, 0) != cudaSuccess) {
-            status = "the GPU does not answer";
-            return;
-        }
-        available = true;
-        char text[256];
-        std::snprintf(text, sizeof text, "%s, %.0f GiB, compute capability %d.%d", p.name,
-                      static_cast<double>(p.totalGlobalMem) / (1 << 30), p.major, p.minor);
-        status = text;
-    }
-};
-
-const Probe& probe() {
-    static const Probe p;
-    return p;
-}
+using grainray::cuda::probe;
 
 /// The driver's pool, which keeps what is freed: memory that a list update needs for a moment serves the next one.
 cudaMemPool_t pool() {
@@ -83,6 +54,7 @@ const memory::Cuda& memory::cuda() {
     static const Cuda present{
         [] { return probe().available; },
         [] { return probe().status; },
+        grainray::cuda::report,
         allocate,
         [](void* p) noexcept { cudaFreeAsync(p, nullptr); },
         [](void* to, const void* from, std::size_t bytes) { grainray::cuda::check(cudaMemcpy(to, from, bytes, cudaMemcpyDefault), "copy"); },

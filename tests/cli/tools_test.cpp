@@ -4,6 +4,7 @@
 #include <cstdlib>
 
 #include "grainray/output.hpp"
+#include "folders.hpp"
 #include "process.hpp"
 
 namespace grainray::cli_test {
@@ -22,7 +23,7 @@ TEST(Output, ThatIsLostIsAFailure) {
     const Folder folder;
     folder.write("pair.toml", two_spheres());
     for (const std::string words : {"info", "info --schema", "check pair.toml", "--help"}) {
-        const std::string command = "cd " + (folder / "").string() + " && " + GRAINRAY_COMMAND + ' ' + words + " > /dev/full 2> err.txt";
+        const std::string command = "cd " + (folder / "").string() + " && " + (test::program_folder() / "grainray").string() + ' ' + words + " > /dev/full 2> err.txt";
         EXPECT_EQ(WEXITSTATUS(std::system(command.c_str())), 1) << words;
         EXPECT_TRUE(folder.read("err.txt").starts_with("grainray: ")) << words;
     }

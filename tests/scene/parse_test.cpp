@@ -4,6 +4,7 @@
 #include <iterator>
 #include <numbers>
 
+#include "folders.hpp"
 #include "scene_text.hpp"
 
 namespace grainray::test {
@@ -204,7 +205,7 @@ TEST(ContactParameters, APairRowReplacesOnlyWhatItGives) {
 
 /// docs/scene.md holds schema_text() between two marks; GRAINRAY_UPDATE_DOCS=1 writes it there.
 TEST(Schema, DocsHoldTheFieldTable) {
-    const std::string path = GRAINRAY_SOURCE_DIR "/docs/scene.md", begin = "<!-- fields -->\n",
+    const std::string path = project_folder() / "docs/scene.md", begin = "<!-- fields -->\n",
                       end = "<!-- end of fields -->";
     std::ifstream in(path);
     std::string page{std::istreambuf_iterator<char>(in), {}};
