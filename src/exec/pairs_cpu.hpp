@@ -19,7 +19,7 @@ struct alignas(64) Batch {
     const std::uint32_t *i, *j, *entry;
     const std::int32_t *x, *y, *z, *radius_i, *radius_j;
     int size = 0;
-    float velocity[4][width];                  ///< of i against j; [3] is the sum of the masses
+    float velocity[4][width];                ///< of i against j; [3] is the sum of the masses
     float spin_i[4][width], spin_j[4][width];  ///< [3]: the material's bits
     float kn[width], kt[width], mu[width], cn[width], ct[width];
     float history[3][width];
@@ -116,9 +116,7 @@ struct Sums {
     }
     [[gnu::always_inline]] void add(Wrench& w, const float* row) const {
         using Long = Vector<std::int64_t, 8>;
-        Vector<float, 8> f;
-        lanes::load<8>(f, row);
-        const Vector<double, 8> shifted = __builtin_convertvector(f, Vector<double, 8>) + magic;
+        const Vector<double, 8> shifted = Vector<double, 8>{row[0], row[1], row[2], row[3], row[4], row[5], row[6], row[7]} + magic;
         Long sums;
         lanes::load<8>(sums, w.force);
         sums += (Long)shifted - (Long)magic;
@@ -138,7 +136,7 @@ template <class V>
 template <int L>
 struct Rows {
     alignas(64) float row[L][8];
-    [[gnu::always_inline]] const float* at(int l) const { return row[(l & 3) * (L / 4) + l / 4]; }
+    [[gnu::always_inline]] const float* at(unsigned l) const { return row[(l & 3) * (L / 4) + l / 4]; }
     template <bool other>
     [[gnu::always_inline]] void turn(const Sums& sums, const float (&force)[3][width], const float (&torque)[3][width], int l) {
         Vector<float, L> low[4], high[4];
@@ -175,15 +173,18 @@ struct Rows {
 template <int L>
 [[gnu::always_inline]] inline void scatter(const PairLoop& loop, const Sums& sums, std::uint64_t start, const Batch& b, std::uint32_t block_end) {
     Wrench outside{};  // the other half of a pair that leaves the block
+    Wrench* const wrench = loop.wrench.data;
+    Vec3f* const history = loop.history.data + start;
+    const std::uint32_t block = loop.block, block_start = block_end - block;
     for (int l = 0; l < b.size; l += L) {
         Rows<L> on_i, on_j;
         on_i.template turn<false>(sums, b.force, b.torque_i, l);
         on_j.template turn<true>(sums, b.force, b.torque_j, l);
         for (int k = l; k < l + L && k < b.size; ++k) {
-            loop.history[start + b.entry[k]] = {b.history[0][k], b.history[1][k], b.history[2][k]};
-            sums.add(loop.wrench[b.i[k]], on_i.at(k - l));
-            const bool inside = b.j[k] - (block_end - loop.block) < loop.block;  // unsigned: j stands in this block
-            sums.add(*(inside ? &loop.wrench[b.j[k]] : &outside), on_j.at(k - l));
+            history[b.entry[k]] = {b.history[0][k], b.history[1][k], b.history[2][k]};
+            sums.add(wrench[b.i[k]], on_i.at(k - l));
+            const bool inside = b.j[k] - block_start < block;  // unsigned: j stands in this block
+            sums.add(*(inside ? &wrench[b.j[k]] : &outside), on_j.at(k - l));
         }
     }
 }

@@ -14,7 +14,7 @@ namespace grainray::cpu::pairs {
 
 /// Touching pairs; what lies past `size` is a valid index.
 struct alignas(64) Touching {
-    static constexpr int stretch = 256;        ///< entries tested at once
+    static constexpr int stretch = 512;        ///< entries tested at once
     static constexpr int room = stretch + 64;  ///< vectors write and read past the end
     std::uint32_t i[room], j[room];
     std::uint32_t entry[room];                 ///< less `start`
