@@ -9,12 +9,13 @@ namespace grainray {
 /// Rows of candidates with the tangential history of each: particle-particle or particle-plane. One row after the other,
 /// except the particle pairs of CUDA, which stand in slices (src/exec/rows_cuda.hpp); only those have `counts`.
 struct ContactList {
-    explicit ContactList(Device device) : offsets(device), counts(device), partners(device), history(device) {}
+    explicit ContactList(Device device) : offsets(device), counts(device), partners(device), history(device), touched(device) {}
     Array<std::uint64_t> offsets;
     Array<std::uint32_t> counts;
     Array<std::uint32_t> partners;
     Array<Vec3f> history;
-    std::size_t bytes() const { return offsets.bytes() + counts.bytes() + partners.bytes() + history.bytes(); }
+    Array<std::uint8_t> touched;  ///< 1 where a history may be other than zero; the CPU's pair loop alone
+    std::size_t bytes() const { return offsets.bytes() + counts.bytes() + partners.bytes() + history.bytes() + touched.bytes(); }
 };
 
 /// A plane at one instant, relative to the world's origin. Distances are taken in double: a plane reaches far.

@@ -10,7 +10,7 @@ void contacts(State& s, ContactLaw law, const StepConstants& constants) {
     const PairLoop loop{s.particles.near.view(), s.particles.far.view(), s.particles.body.view(), s.grains.offsets.view(),
                         s.grains.partners.view(), s.grains.history.view(), s.grain_parameters.view(), s.materials, s.block,
                         static_cast<float>(s.particles.scale.unit), 1.0 / s.quanta.force, 1.0 / s.quanta.torque, s.period,
-                        s.wrench.view()};
+                        s.wrench.view(), s.grains.touched.view()};
     with_law(law, constants.dt, [&](auto functor) { for_each_touching_pair(loop, functor); });
 }
 

@@ -27,11 +27,14 @@ void lay_out(NeighborList& found, const Carry& carry, ContactList& list) {
     found.offsets.swap(list.offsets);
     found.neighbors.swap(list.partners);
     list.history.resize_discard_slack(list.partners.size());
+    list.touched.resize_discard_slack(list.partners.size());
+    const auto touched = list.touched.view();
     const Rows rows(list);
     for_each(list.offsets.size() - 1, [=](std::size_t i) {
         for (std::uint64_t e = rows.offsets[i]; e < rows.offsets[i + 1]; ++e) {
             const std::uint32_t j = rows.partners[e];
-            rows.histories[e] = carry.touches(i, j) ? carry.history(i, j) : Vec3f{};
+            touched[e] = carry.touches(i, j);
+            rows.histories[e] = touched[e] ? carry.history(i, j) : Vec3f{};
         }
     });
 }
