@@ -1,5 +1,5 @@
 # cmake --install: libraries, headers, the command and the package files that find_package(grainray) reads.
-# Two export sets, so that whoever asks for the neighbour search alone needs oneTBB alone.
+# Two export sets, so that whoever asks for the neighbour search alone needs oneTBB and Embree alone.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 set(GRAINRAY_PACKAGE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/grainray)

@@ -27,8 +27,8 @@ std::string vector_level() {
 
 void print_backends(Device device) {
     for (const BackendInfo& info : search_backends(device))
-        fmt::print("  search {:<9} {}{}\n", info.name, info.available ? "" : "not available: ", info.reason);
-    fmt::print("  search {:<9} not available: search by ray tracing is not built yet\n", "rays");
+        if (info.name != "rays-published")
+            fmt::print("  search {:<9} {}{}\n", info.name, info.available ? "" : "not available: ", info.reason);
 }
 
 void print_libraries() {
@@ -48,7 +48,6 @@ int info(bool schema) {
     fmt::print("device cuda  {}\n", cuda_status());
     print_backends(Device::cuda);
     fmt::print("runs         on {}\n", cuda_available() ? "cuda (--device cpu for the CPU)" : "cpu");
-    fmt::print("RT cores     not used: this build has no ray tracing search yet\n");
     print_libraries();
     return done;
 }

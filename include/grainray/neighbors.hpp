@@ -36,7 +36,8 @@ enum class ListKind {
 };
 
 struct SearchOptions {
-    std::string backend = "auto";  ///< auto | brute | cells
+    /// auto | brute | cells | rays (Embree on the CPU, OptiX on CUDA) | rays-published (the published algorithm, to compare)
+    std::string backend = "auto";
     ListKind kind = ListKind::full;
     std::uint32_t block = 1;       ///< of ListKind::blocked
     bool ascending = true;         ///< each row in ascending order (else the order is unspecified)
@@ -55,7 +56,7 @@ struct NeighborList {
 struct BackendInfo {
     std::string name;
     bool available = false;
-    std::string reason;  ///< one sentence
+    std::string reason;  ///< one sentence: what it runs on, or why it is off and the remedy
 };
 
 /// A reusable search; keeps its buffers from call to call. Not thread-safe; uses all threads of the CPU or one GPU.

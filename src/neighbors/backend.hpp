@@ -34,6 +34,12 @@ public:
     virtual std::size_t memory_bytes() const = 0;
 };
 
+/// Whether a back end works here, and one sentence: what it runs on, or why it is off and what to do.
+struct Status {
+    bool available;
+    std::string reason;
+};
+
 /// Packs caller's points; throws InputError naming the first bad one. `what` is "point" or "query".
 using PackFunction = void (*)(const Points&, const Request&, const char* what, Packed&);
 
@@ -43,10 +49,16 @@ namespace grainray::cpu {
 void pack_points(const Points&, const neighbors::Request&, const char* what, neighbors::Packed&);
 std::unique_ptr<neighbors::Backend> make_brute();
 std::unique_ptr<neighbors::Backend> make_cells();
+std::unique_ptr<neighbors::Backend> make_embree();
+std::unique_ptr<neighbors::Backend> make_embree_published();
+neighbors::Status embree_status();
 }  // namespace grainray::cpu
 
 namespace grainray::cuda {
 void pack_points(const Points&, const neighbors::Request&, const char* what, neighbors::Packed&);
 std::unique_ptr<neighbors::Backend> make_brute();
 std::unique_ptr<neighbors::Backend> make_cells();
+std::unique_ptr<neighbors::Backend> make_optix();
+std::unique_ptr<neighbors::Backend> make_optix_published();
+neighbors::Status optix_status();
 }  // namespace grainray::cuda

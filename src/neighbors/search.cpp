@@ -10,29 +10,49 @@ namespace {
 
 using Factory = std::unique_ptr<neighbors::Backend> (*)();
 
-/// The registry: one row a back end. A null factory: not on that device.
+/// The registry: one row a back end, with how to make it on each device and whether it works here.
 struct Row {
     const char* name;
     Factory cpu, cuda;
+    neighbors::Status (*cpu_status)();
+    neighbors::Status (*cuda_status)();
 };
+
+neighbors::Status always() { return {true, "ready"}; }
+neighbors::Status where_cuda() { return {cuda_available(), cuda_available() ? "ready" : cuda_status()}; }
+
 #ifdef GRAINRAY_HAS_CUDA
-#define GRAINRAY_ROW(name) Row{#name, cpu::make_##name, cuda::make_##name}
-constexpr bool built_with_cuda = true;
+#define GRAINRAY_ON_CUDA(function) cuda::function
 #else
-#define GRAINRAY_ROW(name) Row{#name, cpu::make_##name, nullptr}
-constexpr bool built_with_cuda = false;
+#define GRAINRAY_ON_CUDA(function) nullptr
 #endif
-constexpr std::array registry{GRAINRAY_ROW(brute), GRAINRAY_ROW(cells)};
+#ifdef GRAINRAY_HAS_OPTIX
+#define GRAINRAY_ON_OPTIX(function) cuda::function
+neighbors::Status rays_on_cuda() { return cuda_available() ? cuda::optix_status() : where_cuda(); }
+#else
+#define GRAINRAY_ON_OPTIX(function) nullptr
+neighbors::Status rays_on_cuda() {
+    if (!cuda_available()) return where_cuda();
+    return {false, "this build has no OptiX: its headers were not there when it was configured; set OptiX_ROOT to their folder and build again"};
+}
+#endif
+
+constexpr std::array registry{
+    Row{"brute", cpu::make_brute, GRAINRAY_ON_CUDA(make_brute), always, where_cuda},
+    Row{"cells", cpu::make_cells, GRAINRAY_ON_CUDA(make_cells), always, where_cuda},
+    Row{"rays", cpu::make_embree, GRAINRAY_ON_OPTIX(make_optix), cpu::embree_status, rays_on_cuda},
+    Row{"rays-published", cpu::make_embree_published, GRAINRAY_ON_OPTIX(make_optix_published), cpu::embree_status, rays_on_cuda},
+};
 
 /// Below this many points all pairs are tested faster than cells are sorted.
 constexpr std::size_t brute_is_faster_below = 256;
 
 Factory factory(const Row& row, Device device) { return device == Device::cpu ? row.cpu : row.cuda; }
+neighbors::Status status(const Row& row, Device device) { return device == Device::cpu ? row.cpu_status() : row.cuda_status(); }
 
-std::string known_names(Device device) {
+std::string known_names() {
     std::string names = "auto";
-    for (const Row& row : registry)
-        if (factory(row, device)) names += std::string(", ") + row.name;
+    for (const Row& row : registry) names += std::string(", ") + row.name;
     return names;
 }
 
@@ -63,10 +83,13 @@ struct NeighborSearch::Impl {
     }
 
     const Row& require(const std::string& name) const {
-        for (const Row& row : registry)
-            if (name == row.name && factory(row, device)) return row;
-        throw InputError("search back end '" + name + "' is not known for device '" + std::string(grainray::name(device)) +
-                         "'; known are: " + known_names(device));
+        for (const Row& row : registry) {
+            if (name != row.name) continue;
+            if (const neighbors::Status s = status(row, device); !s.available)
+                throw InputError("search back end '" + name + "' is not available on device '" + std::string(grainray::name(device)) + "': " + s.reason);
+            return row;
+        }
+        throw InputError("search back end '" + name + "' is not known; known are: " + known_names());
     }
 
     neighbors::Request request() const { return {options.kind, options.block, options.ascending, options.lower, options.period}; }
@@ -120,8 +143,8 @@ std::size_t NeighborSearch::memory_bytes() const {
 std::vector<BackendInfo> search_backends(Device device) {
     std::vector<BackendInfo> info;
     for (const Row& row : registry) {
-        const bool built = factory(row, device), usable = built && (device == Device::cpu || cuda_available());
-        info.push_back({row.name, usable, usable ? "ready" : device == Device::cuda ? (built_with_cuda ? cuda_status() : "this build has no CUDA") : "not built"});
+        const neighbors::Status s = status(row, device);
+        info.push_back({row.name, s.available, s.reason});
     }
     return info;
 }

@@ -13,7 +13,7 @@ TEST(Info, NamesDevicesAndBackEnds) {
     const Folder folder;
     const Result r = folder.grainray({"info"});
     ASSERT_EQ(r.status, 0) << r.err;
-    for (const char* word : {"device cpu", "threads", "device cuda", "search brute", "search cells", "search rays", "not built yet", "RT cores", "oneTBB"})
+    for (const char* word : {"device cpu", "threads", "device cuda", "search brute", "search cells", "search rays", "Embree", "oneTBB"})
         EXPECT_NE(r.out.find(word), std::string::npos) << "no '" << word << "' in\n" << r.out;
     EXPECT_NE(folder.grainray({"info", "--schema"}).out.find("normal_stiffness"), std::string::npos);
 }

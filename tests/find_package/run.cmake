@@ -12,7 +12,7 @@ set(configure ${CMAKE_COMMAND} -G ${GENERATOR} -S ${PROJECT} -D CMAKE_CXX_COMPIL
 
 # The neighbour search alone must not look for anything that only simulations need.
 set(hidden "")
-foreach(package fmt tomlplusplus ZLIB PNG HDF5 embree)
+foreach(package fmt tomlplusplus ZLIB PNG HDF5)
   list(APPEND hidden -D CMAKE_DISABLE_FIND_PACKAGE_${package}=ON)
 endforeach()
 run(${configure} -B ${WORK}/neighbors -D COMPONENTS=neighbors ${hidden})

@@ -64,7 +64,7 @@ TEST(Contract, BadPointsAreNamed) {
 TEST(Contract, UnknownBackendNamesTheKnownOnes) {
     const std::string message = refusal(random_cloud("", 5, 0, 1, 0.1f, 1), {"cell", ListKind::full, 1, true, {}, {}});
     EXPECT_NE(message.find("'cell'"), std::string::npos);
-    EXPECT_NE(message.find("auto, brute, cells"), std::string::npos) << message;
+    EXPECT_NE(message.find("auto, brute, cells, rays, rays-published"), std::string::npos) << message;
 }
 
 TEST(Contract, BadBoxesAndBlocksAreRefused) {
