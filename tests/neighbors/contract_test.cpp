@@ -81,6 +81,23 @@ TEST(Contract, RowsHaveNoCap) {
     EXPECT_EQ(list.neighbors.size(), 3000u * 2999u);
 }
 
+TEST(Contract, AutoMeasuresOnThePointsAndSaysSo) {
+    const Cloud c = random_cloud("", 6000, 0, 1, 0.04f, 1);
+    for (const Device device : {Device::cpu, Device::cuda}) {
+        if (device == Device::cuda && !cuda_available()) continue;
+        const DeviceCloud on_device(device, c);
+        NeighborSearch chosen(device), cells(device, {"cells", ListKind::full, 1, true, {}, {}});
+        NeighborList list(device), expected(device);
+        cells.find(on_device.points(), expected);
+        for (int call = 0; call < 3; ++call) {
+            chosen.find(on_device.points(), list);
+            EXPECT_EQ(rows_of(list), rows_of(expected));
+            EXPECT_NE(chosen.reason().find("ms a search against"), std::string::npos) << chosen.reason();
+        }
+        EXPECT_TRUE(chosen.backend() == "cells" || chosen.backend() == "rays") << chosen.backend();
+    }
+}
+
 TEST(Contract, AFarOutlierCostsNoMemory) {
     Cloud c = random_cloud("", 20000, 0, 1, 0.02f, 1);
     NeighborSearch near(Device::cpu, {"cells", ListKind::half, 1, true, {}, {}}), far(Device::cpu, {"cells", ListKind::half, 1, true, {}, {}});

@@ -26,6 +26,8 @@ TEST_P(SameHash, WhateverTheBackend) {
     EXPECT_EQ(hash_after(c, 250, GetParam(), "auto"), cells);
     for (const BackendInfo& b : search_backends(GetParam()))
         if (b.available) EXPECT_EQ(hash_after(c, 250, GetParam(), b.name), cells) << b.name;
+    const Case measured = column(20, 18, 20);  // so many that auto measures
+    EXPECT_EQ(hash_after(measured, 60, GetParam(), "auto"), hash_after(measured, 60, GetParam(), "cells"));
 }
 
 TEST_P(SameHash, WhateverTheMarginsAndTheInterval) {

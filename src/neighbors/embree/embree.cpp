@@ -14,23 +14,24 @@ namespace rays = neighbors::rays;
 struct Boxes {
     embree::Asker asker;
     View<const Sphere> points;
-    Vec3f lower, upper, period;
+    rays::Bounds bounds;
+    rays::Frame frame;
 
     /// visit(j, shift) for every box near an image of s.
     template <class Visit>
     void near(const Sphere& s, const Visit& visit) const {
-        rays::for_each_image(period, [&](const Vec3i& shift) {
-            const Vec3f c = rays::held(rays::image(s, shift, period));
-            float radius = asker.by_ray ? 0 : s.reach;
+        rays::for_each_image(frame.period, [&](const Vec3i& shift) {
+            const Vec3f at = rays::image({s.x, s.y, s.z}, shift, frame.period), c = frame.point(at);
+            float radius = asker.by_ray ? 0 : s.reach * frame.scale;
             for (int a = 0; a < 3 && !asker.by_ray; ++a)
-                radius = std::max(radius, s.reach + rays::pad(s.reach, rays::size_at(c[a], period[a])));
+                radius = std::max(radius, s.reach * frame.scale + frame.pad(s.reach, at[a], frame.period[a]));
             if (shift != Vec3i{} && outside(c, radius)) return;
             asker.near(c, radius, [&](std::uint32_t j) { visit(j, shift); });
         });
     }
     bool outside(const Vec3f& c, float radius) const {
         for (int a = 0; a < 3; ++a)
-            if (c[a] + radius < lower[a] || c[a] - radius > upper[a]) return true;
+            if (c[a] + radius < bounds.lower[a] || c[a] - radius > bounds.upper[a]) return true;
         return false;
     }
 };
@@ -52,7 +53,7 @@ struct RayPairs {
         const Sphere a = boxes.points[k];
         boxes.near(a, [&](std::uint32_t j, const Vec3i& shift) {
             const Sphere& b = boxes.points[j];
-            emit(j, neighbors::owns(a, ids[k], b, ids[j]) & near<periodic>(a, shift, b, boxes.period));
+            emit(j, neighbors::owns(a, ids[k], b, ids[j]) & near<periodic>(a, shift, b, boxes.frame.period));
         });
     }
 };
@@ -66,7 +67,7 @@ struct RayQueries {
     template <class Emit>
     void find(std::size_t k, const Emit& emit) const {
         const Sphere a = queries[k];
-        boxes.near(a, [&](std::uint32_t j, const Vec3i& shift) { emit(j, near<periodic>(a, shift, boxes.points[j], boxes.period)); });
+        boxes.near(a, [&](std::uint32_t j, const Vec3i& shift) { emit(j, near<periodic>(a, shift, boxes.points[j], boxes.frame.period)); });
     }
 };
 
@@ -75,13 +76,13 @@ public:
     explicit Embree(bool published) : published_(published) {}
 
     void pairs(const neighbors::Packed& p, const neighbors::Request& r, NeighborList& list) override {
-        const Boxes boxes = build(p, p.max_reach, r);
+        const Boxes boxes = build(p, p, r);
         if (r.periodic()) build_list(RayPairs<true>{boxes, p.ids.view()}, p.size(), p.size(), r, list);
         else build_list(RayPairs<false>{boxes, p.ids.view()}, p.size(), p.size(), r, list);
         tree_.check();
     }
     void queries(const neighbors::Packed& q, const neighbors::Packed& p, const neighbors::Request& r, NeighborList& list) override {
-        const Boxes boxes = build(p, q.max_reach, r);
+        const Boxes boxes = build(q, p, r);
         if (r.periodic()) build_list(RayQueries<true>{boxes, q.spheres.view()}, q.size(), q.size(), r, list);
         else build_list(RayQueries<false>{boxes, q.spheres.view()}, q.size(), q.size(), r, list);
         tree_.check();
@@ -89,12 +90,11 @@ public:
     std::size_t memory_bytes() const override { return tree_.memory_bytes(); }
 
 private:
-    /// largest: of the reaches of those who will ask.
-    Boxes build(const neighbors::Packed& p, float largest, const neighbors::Request& r) {
-        const float extra = published_ ? largest : 0, widest = p.max_reach + extra;
-        tree_.build(p.spheres.view(), extra, r.period);
-        return {{tree_.scene(), published_}, p.spheres.view(), rays::box_around(p.lower, widest, r.period).lower,
-                rays::box_around(p.upper, widest, r.period).upper, r.period};
+    Boxes build(const neighbors::Packed& askers, const neighbors::Packed& p, const neighbors::Request& r) {
+        const float extra = published_ ? askers.max_reach : 0, widest = p.max_reach + extra;
+        const rays::Frame frame = rays::frame_of({{p.lower, p.upper}, {askers.lower, askers.upper}}, widest, r.period);
+        tree_.build(p.spheres.view(), extra, frame);
+        return {{tree_.scene(), published_}, p.spheres.view(), {frame.box(p.lower, widest).lower, frame.box(p.upper, widest).upper}, frame};
     }
 
     embree::Tree tree_;

@@ -52,9 +52,8 @@ void Asker::ask_by_ray(const Vec3f& c, Call found, const void* visit) const {
     start(question.context);
     question.call = found;
     question.visit = visit;
-    const Vec3f from = neighbors::rays::held(c);
     RTCRay ray{};
-    ray.org_x = from.x, ray.org_y = from.y, ray.org_z = from.z;
+    ray.org_x = c.x, ray.org_y = c.y, ray.org_z = c.z;
     ray.dir_x = ray.dir_y = ray.dir_z = 0.57735f;  // no zero among them: 0 * infinity on the face of a box is no number
     ray.tfar = 1e-16f;
     ray.mask = ~0u;
@@ -65,8 +64,7 @@ void Asker::ask_by_distance(const Vec3f& c, float radius, Call found, const void
     Question question;
     question.call = found;
     question.visit = visit;
-    const Vec3f at = neighbors::rays::held(c);
-    RTCPointQuery query{at.x, at.y, at.z, 0, neighbors::rays::held(radius)};
+    RTCPointQuery query{c.x, c.y, c.z, 0, radius};
     RTCPointQueryContext context;
     rtcInitPointQueryContext(&context);
     rtcPointQuery(scene, &query, &context, on_point, &question);
@@ -89,14 +87,14 @@ Tree::~Tree() {
 void Tree::bounds(const RTCBoundsFunctionArguments* a) {
     const auto& tree = *static_cast<const Tree*>(a->geometryUserPtr);
     const neighbors::Sphere s = tree.points_[a->primID];
-    const auto box = neighbors::rays::box_around({s.x, s.y, s.z}, s.reach + tree.extra_, tree.period_);
+    const auto box = tree.frame_.box({s.x, s.y, s.z}, s.reach + tree.extra_);
     *a->bounds_o = {box.lower.x, box.lower.y, box.lower.z, 0, box.upper.x, box.upper.y, box.upper.z, 0};
 }
 
-void Tree::build(View<const neighbors::Sphere> points, float extra, const Vec3f& period) {
+void Tree::build(View<const neighbors::Sphere> points, float extra, const neighbors::rays::Frame& frame) {
     points_ = points;
     extra_ = extra;
-    period_ = period;
+    frame_ = frame;
     if (scene_) rtcReleaseScene(scene_);
     scene_ = rtcNewScene(device_);
     rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_ROBUST);

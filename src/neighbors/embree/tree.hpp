@@ -20,7 +20,7 @@ struct Asker {
     RTCScene scene;
     bool by_ray;  ///< a ray of length 1e-16 instead of a point query
 
-    /// visit(p) for every box that comes within `radius` of c (or, by ray, holds c).
+    /// visit(p) for every box that comes within `radius` of c (or, by ray, holds c), all in the tracer's frame.
     template <class Visit>
     void near(const Vec3f& c, float radius, const Visit& visit) const {
         if (by_ray) ask_by_ray(c, &call<Visit>, &visit);
@@ -43,7 +43,7 @@ public:
     Tree& operator=(const Tree&) = delete;
 
     /// Boxes of half-width reach + extra around the points; they are read until the next build.
-    void build(View<const neighbors::Sphere> points, float extra, const Vec3f& period);
+    void build(View<const neighbors::Sphere> points, float extra, const neighbors::rays::Frame&);
     /// Throws what Embree could not do since the last call.
     void check() const;
     RTCScene scene() const { return scene_; }
@@ -56,7 +56,7 @@ private:
     RTCScene scene_ = nullptr;
     View<const neighbors::Sphere> points_;
     float extra_ = 0;
-    Vec3f period_;
+    neighbors::rays::Frame frame_;
     mutable std::int64_t bytes_ = 0;
 };
 

@@ -3,47 +3,57 @@
 // narrow.
 #pragma once
 
+#include <cmath>
+#include <initializer_list>
+
 #include "neighbors/pair_test.hpp"
 
 namespace grainray::neighbors::rays {
-
-/// Points are clamped to +-farthest: Embree drops boxes beyond 1.8e18 in silence, and a square must not overflow.
-constexpr float farthest = 1e18f;
-
-GR_HD inline float clamp(float v, float least, float most) { return v < least ? least : v > most ? most : v; }
-GR_HD inline float held(float v) { return clamp(v, -farthest, farthest); }
-GR_HD inline Vec3f held(const Vec3f& v) { return {held(v.x), held(v.y), held(v.z)}; }
-/// Corners are clamped so that a point that was in the box stays in it, and never on its face.
-GR_HD inline float held_lower(float v) { return clamp(v, -1.5f * farthest, 0.99f * farthest); }
-GR_HD inline float held_upper(float v) { return -held_lower(-v); }
-
-GR_HD inline float magnitude(float v) { return v < 0 ? -v : v; }
-
-/// What a distance w along an axis may lose: 4e-6 of itself, eight roundings of the coordinates (`size` bounds them), and
-/// 1e-22, since the squares of shorter distances are no longer normal numbers.
-GR_HD inline float pad(float w, float size) { return w * 4e-6f + size * 5e-7f + 1e-22f; }
-
-/// Bounds the coordinates that meet at x: its own, and those of its images.
-GR_HD inline float size_at(float x, float period) { return magnitude(x) + 2 * period; }
 
 struct Bounds {
     Vec3f lower, upper;
 };
 
-/// Every point that the predicate may find closer than w to c along each axis.
-GR_HD inline Bounds box_around(const Vec3f& c, float w, const Vec3f& period) {
-    const Vec3f h{w + pad(w, size_at(c.x, period.x) + w), w + pad(w, size_at(c.y, period.y) + w), w + pad(w, size_at(c.z, period.z) + w)};
-    return {{held_lower(c.x - h.x), held_lower(c.y - h.y), held_lower(c.z - h.z)}, {held_upper(c.x + h.x), held_upper(c.y + h.y), held_upper(c.z + h.z)}};
+GR_HD inline float magnitude(float v) { return v < 0 ? -v : v; }
+
+/// The tracer's world: the caller's, times a power of two that brings it to the size of 1. Tracers have limits of their own
+/// (Embree drops boxes beyond 1.8e18 in silence, GPUs lose boxes smaller than 1e-20), the scaling rounds nothing.
+struct Frame {
+    float scale = 1;
+    Vec3f period{};  ///< in the caller's world, as everything that is handed in
+
+    /// What a distance w about x may lose along an axis, scaled: 4e-6 of itself, eight roundings of the coordinates that meet
+    /// there, and 1e-22 of the caller's, since the squares of shorter distances are no normal numbers.
+    GR_HD float pad(float w, float x, float length) const {
+        return (w * scale) * 4e-6f + (magnitude(x * scale) + w * scale + 2 * (length * scale)) * 5e-7f + 1e-22f * scale;
+    }
+    GR_HD Vec3f point(const Vec3f& c) const { return c * scale; }
+
+    /// Every point that the predicate may find closer than w + extra to c along each axis.
+    GR_HD Bounds box(const Vec3f& c, float w) const {
+        w = w < 3e38f ? w : 3e38f;  // farther apart squares overflow, and nothing is near
+        const Vec3f p = point(c), h{w * scale + pad(w, c.x, period.x), w * scale + pad(w, c.y, period.y), w * scale + pad(w, c.z, period.z)};
+        return {p - h, p + h};
+    }
+};
+
+/// A frame for points within all the bounds whose boxes are up to `widest` wide to each side.
+inline Frame frame_of(std::initializer_list<Bounds> all, float widest, const Vec3f& period) {
+    double size = widest;
+    for (const Bounds& b : all)
+        for (int a = 0; a < 3; ++a) size = std::fmax(size, std::fmax(std::fabs(b.lower[a]), std::fabs(b.upper[a])) + 2.0 * period[a]);
+    const int exponent = size > 0 ? std::ilogb(size) : 0;
+    return {std::ldexp(1.0f, exponent > 110 ? -110 : exponent < -100 ? 100 : -exponent), period};
 }
 
-// The default search: a point of the common reach or less has a box of half-width reach + common, on its left side alone,
-// and finds the common points there; a larger one has a box of half-width 2 reach, and finds all those that it owns. Each
-// pair has one finder, and nothing but `common`, which is chosen for speed, depends on the reaches of others.
+// The default search on a GPU: a point of the common reach or less has a box of half-width reach + common, on its left side
+// alone, and finds the common points there; a larger one has a box of half-width 2 reach, and finds all those that it owns.
+// Each pair has one finder, and nothing but `common`, which is chosen for speed, depends on the reaches of others.
 
-GR_HD inline Bounds finder_box(const Sphere& s, float common, const Vec3f& period) {
+GR_HD inline Bounds finder_box(const Sphere& s, float common, const Frame& frame) {
     const bool half = s.reach <= common;
-    Bounds b = box_around({s.x, s.y, s.z}, half ? s.reach + common : 2 * s.reach, period);
-    if (half) b.upper.x = held_upper(s.x + pad(0, size_at(s.x, period.x)));
+    Bounds b = frame.box({s.x, s.y, s.z}, half ? s.reach + common : 2 * s.reach);
+    if (half) b.upper.x = s.x * frame.scale + frame.pad(0, s.x, frame.period.x);
     return b;
 }
 
@@ -63,8 +73,8 @@ GR_HD inline void for_each_image(const Vec3f& period, const Visit& visit) {
             for (int x = -nx; x <= nx; ++x) visit(Vec3i{x, y, z});
 }
 
-GR_HD inline Vec3f image(const Sphere& s, const Vec3i& shift, const Vec3f& period) {
-    return {s.x + static_cast<float>(shift.x) * period.x, s.y + static_cast<float>(shift.y) * period.y, s.z + static_cast<float>(shift.z) * period.z};
+GR_HD inline Vec3f image(const Vec3f& c, const Vec3i& shift, const Vec3f& period) {
+    return {c.x + static_cast<float>(shift.x) * period.x, c.y + static_cast<float>(shift.y) * period.y, c.z + static_cast<float>(shift.z) * period.z};
 }
 
 /// The image of a that the predicate compares with b, along one axis (nearest_image in pair_test.hpp).
