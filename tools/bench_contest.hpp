@@ -1,0 +1,45 @@
+// Searches that do the same work, timed in turns, so that a busy moment of the machine meets all of them alike.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "bench_clouds.hpp"
+
+namespace grainray::cli {
+
+struct Contender {
+    std::string name;
+    std::function<std::uint64_t()> search;      ///< everything: structure, neighbours, list; waits; returns the list's entries
+    std::function<void()> build;                ///< the structure alone; empty where it cannot be had alone
+    std::function<std::size_t()> memory_bytes;  ///< of the searcher and its list; empty: not known
+};
+
+struct Figures {
+    std::string name, failure;  ///< failure: why there are no figures, else empty
+    double median_ms = 0, least_ms = 0;
+    double build_ms = 0;        ///< least; 0: not known
+    std::uint64_t entries = 0;
+    std::size_t memory_bytes = 0;
+    int repeats = 0;
+};
+
+/// Each once to warm up, then in rounds until each has used `seconds`: three rounds at least (one where they are long), 20 at most.
+std::vector<Figures> take_turns(const std::vector<Contender>&, double seconds);
+
+/// A search of this library. The cloud's arrays must outlive the contender; `build` asks for one query's neighbours.
+Contender contender(Device, const SearchOptions&, const Array<float>& xyz, const Array<float>& reach);
+
+/// One row of the results; `both_sides`: the list holds each pair twice.
+nlohmann::ordered_json row_json(const Cloud&, bool both_sides, const Figures&);
+void print_heading();
+void print_row(const nlohmann::ordered_json& row);
+
+/// What figures of several machines are told apart by. `name` empty: the GPU's or the processor's.
+nlohmann::ordered_json machine_json(Device, const std::string& name, int threads);
+
+}  // namespace grainray::cli
