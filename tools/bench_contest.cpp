@@ -136,9 +136,10 @@ void print_row(const nlohmann::ordered_json& row) {
     }
     const auto number = [&](const char* key) { return row.contains(key) ? row[key].get<double>() : 0; };
     const double rate = number("entries_per_second"), points = std::max(number("points"), 1.0);
-    fmt::print("{:>10.3f} {:>10.3f} {:>10} {:>10.2f} {:>9.1f}M {:>11}\n", number("milliseconds"), number("milliseconds_min"),
+    fmt::print("{:>10.3f} {:>10.3f} {:>10} {:>10.2f} {:>9.1f}M {:>11}{}\n", number("milliseconds"), number("milliseconds_min"),
                row.contains("milliseconds_build") ? fmt::format("{:.3f}", number("milliseconds_build")) : "-", number("neighbors_per_point"), rate / 1e6,
-               row.contains("memory_bytes") ? fmt::format("{:.0f}", number("memory_bytes") / points) : "-");
+               row.contains("memory_bytes") ? fmt::format("{:.0f}", number("memory_bytes") / points) : "-",
+               number("entries_differ") != 0 ? fmt::format("  ({:+} entries)", row["entries_differ"].get<std::int64_t>()) : "");
 }
 
 }  // namespace grainray::cli

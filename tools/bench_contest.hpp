@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "bench_clouds.hpp"
+#include "commands.hpp"
 
 namespace grainray::cli {
 
@@ -33,6 +34,11 @@ std::vector<Figures> take_turns(const std::vector<Contender>&, double seconds);
 
 /// A search of this library. The cloud's arrays must outlive the contender; `build` asks for one query's neighbours.
 Contender contender(Device, const SearchOptions&, const Array<float>& xyz, const Array<float>& reach);
+
+/// Searches of other libraries over a cloud, full lists (benchmarks/neighbors/peers).
+using Peers = std::vector<Contender> (*)(Device, const Cloud&);
+/// `bench neighbors`, where peers take turns with this library's back ends.
+void add_bench_neighbors(CLI::App& bench, Action& chosen, Peers peers);
 
 /// One row of the results; `both_sides`: the list holds each pair twice.
 nlohmann::ordered_json row_json(const Cloud&, bool both_sides, const Figures&);

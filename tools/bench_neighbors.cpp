@@ -23,10 +23,12 @@ struct Options {
     double seconds = 0.5;
     int threads = 0;
     std::filesystem::path json;
+    Peers peers = nullptr;
 };
 
 void require_options(const Options& options) {
     require_choice("--kind", options.kind, {"half", "full"});
+    if (options.peers && options.kind != "full") throw InputError("--kind: the peers fill full lists only");
     require_choice("--order", options.order, {"morton", "random"});
     for (const std::int64_t n : options.points) require_at_least("--points", n, 1);
     for (const double r : options.ratios)
@@ -87,12 +89,18 @@ void bench_cloud(const CloudName& which, std::size_t points, const Options& opti
         search.ascending = false;
         contenders.push_back(contender(device, search, xyz, reach));
     }
-    const std::vector<Figures> all = take_turns(contenders, options.seconds);
-    for (const Figures& f : all) {
-        results.push_back(row_json(cloud, options.kind == "full", f));
+    const std::size_t ours = contenders.size();
+    if (options.peers)
+        for (Contender& peer : options.peers(device, cloud)) contenders.push_back(std::move(peer));
+    std::vector<Figures> all = take_turns(contenders, options.seconds);
+    for (std::size_t c = 0; c < all.size(); ++c) {
+        results.push_back(row_json(cloud, options.kind == "full", all[c]));
+        // Peers round in their own way, so pairs on the very reach may differ.
+        if (c >= ours && all[c].failure.empty()) results.back()["entries_differ"] = static_cast<std::int64_t>(all[c].entries - all[0].entries);
         print_row(results.back());
     }
     std::fflush(stdout);
+    all.resize(ours);
     require_equal(cloud, all);
 }
 
@@ -117,9 +125,13 @@ int bench_neighbors(const Options& options) {
 
 }  // namespace
 
-void add_bench_neighbors(CLI::App& bench, Action& chosen) {
+void add_bench_neighbors(CLI::App& bench, Action& chosen) { add_bench_neighbors(bench, chosen, nullptr); }
+
+void add_bench_neighbors(CLI::App& bench, Action& chosen, Peers peers) {
     CLI::App* command = bench.add_subcommand("neighbors", "Time of the neighbour search by back ends, on clouds of points");
     const auto options = std::make_shared<Options>();
+    options->peers = peers;
+    if (peers) options->kind = "full";
     const auto list = [&](const char* name, auto& values, const char* text, const char* type) {
         command->add_option(name, values, text)->delimiter(',')->allow_extra_args(false)->type_name(type);
     };
