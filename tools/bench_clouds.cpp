@@ -180,6 +180,14 @@ Cloud make_cloud(const std::string& name, double ratio, std::size_t points, cons
     return cloud;
 }
 
+std::vector<float> moved_xyz(const Cloud& cloud) {
+    std::vector<float> xyz = cloud.xyz;
+    Random random(3);
+    std::uniform_real_distribution<float> step(-0.05f, 0.05f);
+    for (std::size_t k = 0; k < xyz.size(); ++k) xyz[k] += step(random) * cloud.reach[k / 3];
+    return xyz;
+}
+
 Points points_of(const Array<float>& xyz, const Array<float>& reach) {
     Points points = Points::xyz(xyz.data(), reach.size(), 0);
     points.reach = reach.data();

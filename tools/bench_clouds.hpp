@@ -32,6 +32,9 @@ bool has_sizes(const std::string& cloud);
 /// The same arguments give the same points. Throws InputError for a name that is not known or a ratio below 1.
 Cloud make_cloud(const std::string& name, double ratio, std::size_t points, const std::string& order);
 
+/// The points after a short while: each has moved by up to 0.05 of its reach along each axis.
+std::vector<float> moved_xyz(const Cloud&);
+
 /// The cloud's points where `xyz` and `reach` are copies of the cloud's arrays, on any device.
 Points points_of(const Array<float>& xyz, const Array<float>& reach);
 

@@ -31,21 +31,49 @@ void attempt(Figures& figures, const F& f) {
     }
 }
 
-bool needs_more(const std::vector<double>& times, double used, double seconds) {
-    const int rounds = static_cast<int>(times.size());
-    if (rounds == 0) return true;
-    if (rounds < least_rounds) return used < long_search;
-    return rounds < most_rounds && used < seconds;
+/// The times of one contender, a round each.
+struct Times {
+    std::vector<double> search, update, build, refit;
+    double used = 0;
+
+    /// A search that follows a build cannot keep anything of the last search, and the other way round.
+    void round(const Contender& c) {
+        search.push_back(seconds_of(c.search));
+        used += search.back();
+        if (c.update) update.push_back(seconds_of(c.update));
+        if (c.build) build.push_back(seconds_of(c.build));
+        if (c.build && c.keeps) refit.push_back(seconds_of(c.build));
+    }
+    bool wants_more(double seconds) const {
+        const int rounds = static_cast<int>(search.size());
+        if (rounds < least_rounds) return rounds == 0 || used < long_search;
+        return rounds < most_rounds && used < seconds;
+    }
+};
+
+double median_ms(std::vector<double> times) {
+    std::sort(times.begin(), times.end());
+    return times.empty() ? 0 : 1e3 * times[times.size() / 2];
+}
+
+void summarize(const Times& times, Figures& f) {
+    f.repeats = static_cast<int>(times.search.size());
+    f.median = median_ms(times.search);
+    f.least = 1e3 * *std::min_element(times.search.begin(), times.search.end());
+    f.update = median_ms(times.update);
+    f.build = median_ms(times.build);
+    f.refit = median_ms(times.refit);
 }
 
 /// What this library's contender works with.
 struct Searcher {
     Device device;
-    Points points, one;
+    Points points, moved, one;
     NeighborSearch search;
     NeighborList list, row;
 
-    Searcher(Device d, const SearchOptions& options, const Points& p) : device(d), points(p), one(p), search(d, options), list(d), row(d) {
+    Searcher(Device d, const SearchOptions& options, const Points& p, const Points& m)
+        : device(d), points(p), moved(m), one(p), search(d, options), list(d), row(d) {
         one.size = std::min<std::size_t>(p.size, 1);
     }
 
@@ -57,51 +85,52 @@ struct Searcher {
         if (last) detail::copy(Device::cpu, &neighbor, device, l.neighbors.data() + last - 1, sizeof neighbor);
         return last;
     }
+    std::uint64_t find(const Points& p) {
+        search.find(p, list);
+        return entries(list);
+    }
+    void build() {
+        search.find(one, points, row);
+        entries(row);
+    }
 };
 
 }  // namespace
 
 std::vector<Figures> take_turns(const std::vector<Contender>& contenders, double seconds) {
     std::vector<Figures> all(contenders.size());
-    std::vector<std::vector<double>> times(contenders.size());
-    std::vector<double> used(contenders.size());
+    std::vector<Times> times(contenders.size());
     for (std::size_t c = 0; c < contenders.size(); ++c) {
         all[c].name = contenders[c].name;
-        attempt(all[c], [&] { all[c].entries = contenders[c].search(); });
+        attempt(all[c], [&] {
+            all[c].entries = contenders[c].search();
+            if (contenders[c].memory_bytes) all[c].memory_bytes = contenders[c].memory_bytes();
+            if (contenders[c].build) contenders[c].build();
+        });
     }
     for (bool more = true; more;) {
         more = false;
         for (std::size_t c = 0; c < contenders.size(); ++c) {
-            if (!all[c].failure.empty() || !needs_more(times[c], used[c], seconds)) continue;
+            if (!all[c].failure.empty() || !times[c].wants_more(seconds)) continue;
             more = true;
-            attempt(all[c], [&] { times[c].push_back(seconds_of(contenders[c].search)); });
-            if (!times[c].empty()) used[c] += times[c].back();
+            attempt(all[c], [&] { times[c].round(contenders[c]); });
         }
     }
-    for (std::size_t c = 0; c < contenders.size(); ++c) {
-        Figures& f = all[c];
-        if (!f.failure.empty()) continue;
-        std::sort(times[c].begin(), times[c].end());
-        f.repeats = static_cast<int>(times[c].size());
-        f.median_ms = 1e3 * times[c][times[c].size() / 2];
-        f.least_ms = 1e3 * times[c].front();
-        if (contenders[c].memory_bytes) f.memory_bytes = contenders[c].memory_bytes();
-        if (!contenders[c].build) continue;
-        for (int k = 0; k < std::min(f.repeats, least_rounds); ++k)
-            attempt(f, [&] {
-                const double ms = 1e3 * seconds_of(contenders[c].build);
-                f.build_ms = k == 0 ? ms : std::min(f.build_ms, ms);
-            });
-    }
+    for (std::size_t c = 0; c < contenders.size(); ++c)
+        if (all[c].failure.empty()) summarize(times[c], all[c]);
     return all;
 }
 
-Contender contender(Device device, const SearchOptions& options, const Array<float>& xyz, const Array<float>& reach) {
-    const auto s = std::make_shared<Searcher>(device, options, points_of(xyz, reach));
-    return {options.backend,
-            [s] { s->search.find(s->points, s->list); return s->entries(s->list); },
-            [s] { s->search.find(s->one, s->points, s->row); s->entries(s->row); },
-            [s] { return s->search.memory_bytes() + s->list.offsets.bytes() + s->list.neighbors.bytes(); }};
+Contender contender(Device device, const SearchOptions& options, const Points& points, const Points& moved) {
+    const auto s = std::make_shared<Searcher>(device, options, points, moved);
+    Contender c{options.backend, [s] { return s->find(s->points); }, {}, [s] { s->build(); }, false, [s] {
+                    return s->search.memory_bytes() + s->list.offsets.bytes() + s->list.neighbors.bytes();
+                }};
+    if (device == Device::cuda) {  // on the CPU nothing but memory is kept from call to call
+        c.update = [s] { s->find(s->moved); };
+        c.keeps = true;
+    }
+    return c;
 }
 
 nlohmann::ordered_json row_json(const Cloud& cloud, bool both_sides, const Figures& f) {
@@ -112,34 +141,36 @@ nlohmann::ordered_json row_json(const Cloud& cloud, bool both_sides, const Figur
     }
     const double neighbors = static_cast<double>(f.entries) * (both_sides ? 1 : 2);
     row["neighbors_per_point"] = neighbors / static_cast<double>(std::max<std::size_t>(cloud.size(), 1));
-    row["milliseconds"] = f.median_ms;
-    row["milliseconds_min"] = f.least_ms;
-    if (f.build_ms > 0) row["milliseconds_build"] = f.build_ms;
+    row["milliseconds"] = f.median;
+    row["milliseconds_min"] = f.least;
+    if (f.update > 0) row["milliseconds_update"] = f.update;
+    if (f.build > 0) row["milliseconds_build"] = f.build;
+    if (f.refit > 0) row["milliseconds_refit"] = f.refit;
     row["repeats"] = f.repeats;
     row["list_entries"] = f.entries;
-    row["entries_per_second"] = 1e3 * static_cast<double>(f.entries) / f.median_ms;
+    row["entries_per_second"] = 1e3 * static_cast<double>(f.entries) / f.median;
     if (f.memory_bytes) row["memory_bytes"] = f.memory_bytes;
     return row;
 }
 
 void print_heading() {
-    fmt::print("{:<10} {:>5} {:>10} {:<15} {:>10} {:>10} {:>10} {:>10} {:>10} {:>11}\n", "cloud", "ratio", "points", "search", "ms", "least", "build",
-               "neighbours", "entries/s", "bytes/point");
+    fmt::print("{:<10} {:>5} {:>9} {:<14} {:>9} {:>9} {:>9} {:>9} {:>9} {:>10} {:>10} {:>11}\n", "cloud", "ratio", "points", "search", "ms", "least", "update", "build",
+               "refit", "neighbours", "entries/s", "bytes/point");
 }
 
 void print_row(const nlohmann::ordered_json& row) {
-    fmt::print("{:<10} {:>5g} {:>10} {:<15} ", row["cloud"].get<std::string>(), row["ratio"].get<double>(), row["points"].get<std::size_t>(),
+    fmt::print("{:<10} {:>5g} {:>9} {:<14} ", row["cloud"].get<std::string>(), row["ratio"].get<double>(), row["points"].get<std::size_t>(),
                row["backend"].get<std::string>());
     if (row.contains("failure")) {
         fmt::print("{}\n", row["failure"].get<std::string>());
         return;
     }
     const auto number = [&](const char* key) { return row.contains(key) ? row[key].get<double>() : 0; };
-    const double rate = number("entries_per_second"), points = std::max(number("points"), 1.0);
-    fmt::print("{:>10.3f} {:>10.3f} {:>10} {:>10.2f} {:>9.1f}M {:>11}{}\n", number("milliseconds"), number("milliseconds_min"),
-               row.contains("milliseconds_build") ? fmt::format("{:.3f}", number("milliseconds_build")) : "-", number("neighbors_per_point"), rate / 1e6,
-               row.contains("memory_bytes") ? fmt::format("{:.0f}", number("memory_bytes") / points) : "-",
-               number("entries_differ") != 0 ? fmt::format("  ({:+} entries)", row["entries_differ"].get<std::int64_t>()) : "");
+    for (const char* key : {"milliseconds", "milliseconds_min", "milliseconds_update", "milliseconds_build", "milliseconds_refit"})
+        fmt::print("{:>9} ", row.contains(key) ? fmt::format("{:.3f}", number(key)) : "-");
+    fmt::print("{:>10.2f} {:>9.1f}M {:>11}{}\n", number("neighbors_per_point"), number("entries_per_second") / 1e6,
+               row.contains("memory_bytes") ? fmt::format("{:.0f}", number("memory_bytes") / number("points")) : "-",
+               row.contains("entries_differ") && number("entries_differ") != 0 ? fmt::format("  ({:+} entries)", number("entries_differ")) : "");
 }
 
 }  // namespace grainray::cli

@@ -16,14 +16,17 @@ namespace grainray::cli {
 struct Contender {
     std::string name;
     std::function<std::uint64_t()> search;      ///< everything: structure, neighbours, list; waits; returns the list's entries
+    std::function<void()> update;               ///< the same after the points moved a little, keeping what can be kept; or empty
     std::function<void()> build;                ///< the structure alone; empty where it cannot be had alone
+    bool keeps = false;                         ///< a second build in a row may refit the first one's structure
     std::function<std::size_t()> memory_bytes;  ///< of the searcher and its list; empty: not known
 };
 
+/// Milliseconds; a time that is not known is 0.
 struct Figures {
     std::string name, failure;  ///< failure: why there are no figures, else empty
-    double median_ms = 0, least_ms = 0;
-    double build_ms = 0;        ///< least; 0: not known
+    double median = 0, least = 0;
+    double update = 0, build = 0, refit = 0;  ///< medians
     std::uint64_t entries = 0;
     std::size_t memory_bytes = 0;
     int repeats = 0;
@@ -32,8 +35,9 @@ struct Figures {
 /// Each once to warm up, then in rounds until each has used `seconds`: three rounds at least (one where they are long), 20 at most.
 std::vector<Figures> take_turns(const std::vector<Contender>&, double seconds);
 
-/// A search of this library. The cloud's arrays must outlive the contender; `build` asks for one query's neighbours.
-Contender contender(Device, const SearchOptions&, const Array<float>& xyz, const Array<float>& reach);
+/// A search of this library; `moved` are the points after a short while. The arrays must outlive the contender. `build`
+/// asks for the neighbours of one query.
+Contender contender(Device, const SearchOptions&, const Points&, const Points& moved);
 
 /// Searches of other libraries over a cloud, full lists (benchmarks/neighbors/peers).
 using Peers = std::vector<Contender> (*)(Device, const Cloud&);

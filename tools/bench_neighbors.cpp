@@ -80,14 +80,14 @@ void require_equal(const Cloud& cloud, const std::vector<Figures>& all) {
 
 void bench_cloud(const CloudName& which, std::size_t points, const Options& options, Device device, nlohmann::ordered_json& results) {
     const Cloud cloud = make_cloud(which.name, which.ratio, points, options.order);
-    const Array<float> xyz(device, cloud.xyz), reach(device, cloud.reach);
+    const Array<float> xyz(device, cloud.xyz), moved(device, moved_xyz(cloud)), reach(device, cloud.reach);
     std::vector<Contender> contenders;
     for (const std::string& backend : backends_of(options, device, points)) {
         SearchOptions search;
         search.backend = backend;
         search.kind = options.kind == "half" ? ListKind::half : ListKind::full;
         search.ascending = false;
-        contenders.push_back(contender(device, search, xyz, reach));
+        contenders.push_back(contender(device, search, points_of(xyz, reach), points_of(moved, reach)));
     }
     const std::size_t ours = contenders.size();
     if (options.peers)

@@ -85,7 +85,7 @@ Device arborx_device() { return Kokkos::SpaceAccessibility<Kokkos::HostSpace, Me
 cli::Contender arborx(const cli::Cloud& cloud) {
     static const Kokkos::ScopeGuard kokkos;
     const auto search = std::make_shared<Search>(cloud);
-    return {"arborx", [search] { return search->run(); }, [search] { search->build(); }, {}};
+    return {"arborx", [search] { return search->run(); }, {}, [search] { search->build(); }, false, {}};
 }
 
 }  // namespace grainray::peers

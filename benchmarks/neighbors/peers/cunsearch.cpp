@@ -28,7 +28,7 @@ struct Search {
 
 cli::Contender cunsearch(const cli::Cloud& cloud) {
     const auto search = std::make_shared<Search>(cloud);
-    return {"cunsearch", [search] { return (*search)(); }, {}, {}};
+    return {"cunsearch", [search] { return (*search)(); }, {}, {}, false, {}};
 }
 
 }  // namespace grainray::peers

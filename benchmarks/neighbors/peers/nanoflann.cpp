@@ -76,7 +76,7 @@ struct Search {
 
 cli::Contender nanoflann(const cli::Cloud& cloud) {
     const auto search = std::make_shared<Search>(cloud);
-    return {"nanoflann", [search] { return (*search)(); }, [search] { search->tree.buildIndex(); }, {}};
+    return {"nanoflann", [search] { return (*search)(); }, {}, [search] { search->tree.buildIndex(); }, false, {}};
 }
 
 }  // namespace grainray::peers
