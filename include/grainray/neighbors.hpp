@@ -43,6 +43,9 @@ struct SearchOptions {
     bool ascending = true;         ///< each row in ascending order (else the order is unspecified)
     Vec3f lower{};                 ///< lower corner of the periodic box
     Vec3f period{};                ///< its length along each axis; 0: not periodic. The nearest image counts, once.
+    /// The caller's cudaStream_t, of Device::cuda. find() begins after what is in it, and what is put into it later begins
+    /// after find(). Null: the default stream.
+    void* stream = nullptr;
 };
 
 /// Row i: neighbors[offsets[i]] ... neighbors[offsets[i + 1] - 1]. No row has a cap.

@@ -58,6 +58,8 @@ neighbors::Status embree_status();
 
 namespace grainray::cuda {
 void pack_points(const Points&, const neighbors::Request&, const char* what, neighbors::Packed&);
+/// What is put into stream `second` from now on begins after what stream `first` holds now. Null: the default stream.
+void order_streams(void* first, void* second);
 std::unique_ptr<neighbors::Backend> make_brute();
 std::unique_ptr<neighbors::Backend> make_cells();
 std::unique_ptr<neighbors::Backend> make_optix();

@@ -39,6 +39,12 @@ neighbors::Facts facts(const neighbors::Packed& points, std::size_t entries) {
     return f;
 }
 
+void order_streams([[maybe_unused]] void* first, [[maybe_unused]] void* second) {
+#ifdef GRAINRAY_HAS_CUDA
+    if (first != second) cuda::order_streams(first, second);
+#endif
+}
+
 }  // namespace
 
 struct NeighborSearch::Impl {
@@ -57,6 +63,7 @@ struct NeighborSearch::Impl {
         for (int a = 0; a < 3; ++a)
             if (!std::isfinite(options.period[a]) || options.period[a] < 0 || !std::isfinite(options.lower[a]))
                 throw InputError("periodic box: its lower corner must be finite and its lengths finite and not negative");
+        if (options.stream && device == Device::cpu) throw InputError("a stream is given, but the search is on the CPU; give none or Device::cuda");
         if (options.block == 0) throw InputError("block must be at least 1");
         if (options.backend != "auto") neighbors::require_backend(options.backend, device);
     }
@@ -138,16 +145,20 @@ NeighborSearch& NeighborSearch::operator=(NeighborSearch&&) noexcept = default;
 
 void NeighborSearch::find(const Points& points, NeighborList& list) {
     const neighbors::Request request = impl_->request();
+    order_streams(impl_->options.stream, nullptr);
     pack(impl_->device, points, request, "point", impl_->points);
     impl_->find(false, [&](neighbors::Backend& b) { b.pairs(impl_->points, request, list); }, list);
+    order_streams(nullptr, impl_->options.stream);
 }
 
 void NeighborSearch::find(const Points& queries, const Points& points, NeighborList& list) {
     neighbors::Request request = impl_->request();
     request.kind = ListKind::half;  // rows belong to the queries alone
+    order_streams(impl_->options.stream, nullptr);
     pack(impl_->device, points, request, "point", impl_->points);
     pack(impl_->device, queries, request, "query", impl_->queries);
     impl_->find(true, [&](neighbors::Backend& b) { b.queries(impl_->queries, impl_->points, request, list); }, list);
+    order_streams(nullptr, impl_->options.stream);
 }
 
 const std::string& NeighborSearch::backend() const { return impl_->backend; }
