@@ -59,7 +59,7 @@ struct Search {
             for (std::size_t i = b * block; i < std::min(n, (b + 1) * block); ++i) {
                 const std::size_t before = found[b].size();
                 Row row{cloud, static_cast<std::uint32_t>(i), cloud.reach[i] + largest, found[b]};
-                tree.findNeighbors(row, &cloud.xyz[3 * i], ::nanoflann::SearchParams());
+                tree.findNeighbors(row, &cloud.xyz[3 * i], {});
                 offsets[i] = found[b].size() - before;
             }
         });
