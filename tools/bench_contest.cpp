@@ -9,7 +9,7 @@ namespace grainray::cli {
 namespace {
 
 constexpr int least_rounds = 3, most_rounds = 20;
-constexpr double long_search = 5;  // seconds; one round of such is enough
+constexpr double long_search = 5;  // seconds; the warm-up of such is enough
 
 using Clock = std::chrono::steady_clock;
 
@@ -103,7 +103,8 @@ std::vector<Figures> take_turns(const std::vector<Contender>& contenders, double
     for (std::size_t c = 0; c < contenders.size(); ++c) {
         all[c].name = contenders[c].name;
         attempt(all[c], [&] {
-            all[c].entries = contenders[c].search();
+            const double warm_up = seconds_of([&] { all[c].entries = contenders[c].search(); });
+            if (warm_up > long_search) times[c].search.push_back(times[c].used = warm_up);
             if (contenders[c].memory_bytes) all[c].memory_bytes = contenders[c].memory_bytes();
             if (contenders[c].build) contenders[c].build();
         });

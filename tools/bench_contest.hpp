@@ -32,7 +32,8 @@ struct Figures {
     int repeats = 0;
 };
 
-/// Each once to warm up, then in rounds until each has used `seconds`: three rounds at least (one where they are long), 20 at most.
+/// Each once to warm up, then in rounds until each has used `seconds`: three rounds at least, 20 at most. A search that
+/// takes longer than five seconds is done once.
 std::vector<Figures> take_turns(const std::vector<Contender>&, double seconds);
 
 /// A search of this library; `moved` are the points after a short while. The arrays must outlive the contender. `build`

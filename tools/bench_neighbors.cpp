@@ -1,6 +1,7 @@
 // grainray bench neighbors: the search alone, by back ends, on clouds of points with about ten neighbours each.
 #include <algorithm>
 #include <cstdio>
+#include <set>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -20,7 +21,7 @@ struct Options {
     std::vector<std::string> clouds{"random", "lognormal"}, backends{"auto"};
     std::vector<double> ratios{8};
     std::string kind = "half", order = "morton", device = "auto", machine;
-    double seconds = 0.5;
+    double seconds = 0.5, longest = 20;
     int threads = 0;
     std::filesystem::path json;
     Peers peers = nullptr;
@@ -34,6 +35,7 @@ void require_options(const Options& options) {
     for (const double r : options.ratios)
         if (!(r >= 1 && r <= 1000)) throw InputError(fmt::format("--ratio: {} is not a ratio of sizes; give 1 to 1000", r));
     if (!(options.seconds > 0)) throw InputError("--seconds must be above 0");
+    if (!(options.longest > 0)) throw InputError("--longest must be above 0");
     std::vector<std::string> known = cloud_names();
     known.push_back("all");
     for (const std::string& cloud : options.clouds) require_choice("--cloud", cloud, known);
@@ -78,7 +80,10 @@ void require_equal(const Cloud& cloud, const std::vector<Figures>& all) {
     }
 }
 
-void bench_cloud(const CloudName& which, std::size_t points, const Options& options, Device device, nlohmann::ordered_json& results) {
+/// Who took too long on a cloud: "rays-published on two-size".
+using TooSlow = std::set<std::string>;
+
+void bench_cloud(const CloudName& which, std::size_t points, const Options& options, Device device, TooSlow& too_slow, nlohmann::ordered_json& results) {
     const Cloud cloud = make_cloud(which.name, which.ratio, points, options.order);
     const Array<float> xyz(device, cloud.xyz), moved(device, moved_xyz(cloud)), reach(device, cloud.reach);
     std::vector<Contender> contenders;
@@ -92,11 +97,15 @@ void bench_cloud(const CloudName& which, std::size_t points, const Options& opti
     const std::size_t ours = contenders.size();
     if (options.peers)
         for (Contender& peer : options.peers(device, cloud)) contenders.push_back(std::move(peer));
+    for (Contender& c : contenders)
+        if (too_slow.contains(c.name + " on " + cloud.name))
+            c.search = [&options]() -> std::uint64_t { throw SimulationError(fmt::format("left out: took longer than {:g} s before", options.longest)); };
     std::vector<Figures> all = take_turns(contenders, options.seconds);
     for (std::size_t c = 0; c < all.size(); ++c) {
         results.push_back(row_json(cloud, options.kind == "full", all[c]));
         // Peers round in their own way, so pairs on the very reach may differ.
-        if (c >= ours && all[c].failure.empty()) results.back()["entries_differ"] = static_cast<std::int64_t>(all[c].entries - all[0].entries);
+        if (c >= ours && all[c].failure.empty() && all[0].failure.empty()) results.back()["entries_differ"] = static_cast<std::int64_t>(all[c].entries - all[0].entries);
+        if (all[c].least > 1e3 * options.longest) too_slow.insert(all[c].name + " on " + cloud.name);
         print_row(results.back());
     }
     std::fflush(stdout);
@@ -114,9 +123,10 @@ int bench_neighbors(const Options& options) {
                                 {"kind", options.kind}, {"results", nlohmann::ordered_json::array()}};
     fmt::print("{}, {} threads, {} lists, points in {} order\n", json["machine"]["name"].get<std::string>(), ThreadLimit::count(), options.kind, options.order);
     print_heading();
+    TooSlow too_slow;
     for (const std::int64_t n : options.points)
         for (const CloudName& which : clouds_of(options)) {
-            bench_cloud(which, static_cast<std::size_t>(n), options, device, json["results"]);
+            bench_cloud(which, static_cast<std::size_t>(n), options, device, too_slow, json["results"]);
             // After each cloud, so that a run that is stopped leaves what it has measured.
             if (!options.json.empty()) write_text_atomically(options.json, json.dump(2) + '\n');
         }
@@ -144,6 +154,7 @@ void add_bench_neighbors(CLI::App& bench, Action& chosen, Peers peers) {
     command->add_option("--device", options->device, "auto, cpu or cuda")->capture_default_str();
     command->add_option("--threads", options->threads, "CPU threads; 0: all")->capture_default_str();
     command->add_option("--seconds", options->seconds, "Time for each row, about; at least three repeats, at most 20")->capture_default_str();
+    command->add_option("--longest", options->longest, "A back end that takes more seconds on a cloud is left out of that cloud from then on")->capture_default_str();
     command->add_option("--machine", options->machine, "Name of this machine in the file; default: its GPU or processor")->type_name("NAME");
     command->add_option("--json", options->json, "Write the figures to this file")->type_name("FILE")->check(not_empty());
     command->footer("Example: grainray bench neighbors --cloud two-size --ratio 1,2,4,8,16,32 --backend all --json neighbors.json");
