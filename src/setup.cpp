@@ -62,6 +62,7 @@ PositionScale scale_for(const Scene& scene, const InitialState& s) {
 SearchOptions search_options(const Scene& scene, const SimulationOptions& options, const State& state, std::uint32_t block) {
     SearchOptions o;
     o.backend = options.backend != "auto" ? options.backend : scene.search.backend;
+    if (o.backend == "rays" && scene.search.rays.variant == "published") o.backend = "rays-published";
     o.kind = ListKind::blocked;
     o.block = block;
     o.ascending = false;

@@ -94,7 +94,7 @@ void Command::flag(const std::string& name, bool& value, const std::string& text
 
 void Command::engine_options(EngineOptions& options) {
     option_with_default("--device", options.device, "", "auto, cpu or cuda");
-    option_with_default("--search", options.search, "", "Neighbour search: auto, brute or cells");
+    option_with_default("--search", options.search, "", "Neighbour search: auto, brute, cells or rays");
     option_with_default("--threads", options.threads, "", "CPU threads; 0: all");
     add_overrides(command_, options.set);
 }

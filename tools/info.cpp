@@ -25,8 +25,8 @@ std::string vector_level() {
 
 void print_backends(Device device) {
     for (const BackendInfo& info : search_backends(device))
-        fmt::print("  search {:<9} {}{}\n", info.name, info.available ? "" : "not available: ", info.reason);
-    fmt::print("  search {:<9} not available: search by ray tracing is not built yet\n", "rays");
+        if (info.name != "rays-published")
+            fmt::print("  search {:<9} {}{}\n", info.name, info.available ? "" : "not available: ", info.reason);
 }
 
 void print_libraries() {
@@ -52,9 +52,6 @@ void print_gpus() {
     if (report.gpus.size() > 1) fmt::print("  gpu 0 is the one that runs; CUDA_VISIBLE_DEVICES chooses another\n");
 }
 
-/// Which ray tracing there is, and how much of it is hardware.
-void print_ray_tracing() { fmt::print("RT cores     not used: this build has no ray tracing search yet\n"); }
-
 int info(bool schema) {
     if (schema) {
         fmt::print("{}", schema_text());
@@ -66,7 +63,6 @@ int info(bool schema) {
     print_gpus();
     print_backends(Device::cuda);
     fmt::print("runs         on {}\n", cuda_available() ? "cuda (--device cpu for the CPU)" : "cpu");
-    print_ray_tracing();
     print_libraries();
     return done;
 }

@@ -3,10 +3,7 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
-#include <algorithm>
-
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <tbb/global_control.h>
 
 #include "grainray/neighbors.hpp"
@@ -29,10 +26,10 @@ Scene load_resolved(const std::filesystem::path& file, const std::vector<std::st
 
 void require_backend(const std::string& option, const std::string& backend, Device device) {
     std::vector<std::string> known{"auto"};
-    for (const BackendInfo& info : search_backends(device))
+    for (const BackendInfo& info : search_backends(device)) {
         if (info.available) known.push_back(info.name);
-    if (backend == "rays" && std::find(known.begin(), known.end(), backend) == known.end())
-        throw InputError(fmt::format("{}: search by ray tracing ('rays') is not built yet; known: {}", option, fmt::join(known, ", ")));
+        else if (info.name == backend) throw InputError(fmt::format("{}: '{}' is not available on {}: {}", option, backend, name(device), info.reason));
+    }
     require_choice(option, backend, known);
 }
 
