@@ -30,6 +30,16 @@ TEST_P(SameHash, WhateverTheBackend) {
     EXPECT_EQ(hash_after(measured, 60, GetParam(), "auto"), hash_after(measured, 60, GetParam(), "cells"));
 }
 
+TEST_P(SameHash, TheVariantOfTheSceneIsTaken) {
+    Case c = column(6, 5, 6);
+    c.scene.search.backend = "rays";
+    c.scene.search.rays.variant = "published";
+    for (const BackendInfo& b : search_backends(GetParam()))
+        if (b.name == "rays" && !b.available) GTEST_SKIP() << b.reason;
+    EXPECT_EQ(c.start(GetParam(), "auto").search().backend, "rays-published");
+    EXPECT_EQ(hash_after(c, 100, GetParam(), "auto"), hash_after(c, 100, GetParam(), "cells"));
+}
+
 TEST_P(SameHash, WhateverTheMarginsAndTheInterval) {
     Case c = column(12, 10, 14);
     const auto expected = hash_after(c, 300, GetParam());

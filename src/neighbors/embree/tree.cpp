@@ -98,6 +98,7 @@ void Tree::build(View<const neighbors::Sphere> points, float extra, const neighb
     if (scene_) rtcReleaseScene(scene_);
     scene_ = rtcNewScene(device_);
     rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_ROBUST);
+    // Low: built three times faster than medium for searches as fast; and no spatial splits, so that each box is met once.
     rtcSetSceneBuildQuality(scene_, RTC_BUILD_QUALITY_LOW);
     const RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_USER);
     rtcSetGeometryBuildQuality(geometry, RTC_BUILD_QUALITY_LOW);

