@@ -32,6 +32,10 @@ int axis_left(const Domain& domain, const Vec3d& x) {
     return -1;
 }
 
+std::string surface_name(const Scene& scene, std::uint32_t surface) {
+    return surface < scene.meshes.size() ? "mesh '" + scene.meshes[surface].name + "'" : "the terrain";
+}
+
 template <class... Arguments>
 std::string format(const char* text, Arguments... arguments) {
     char buffer[512];
@@ -79,6 +83,7 @@ Checkpoint Simulation::checkpoint() const {
         else pairs.push_back({b, a, -t.history});
     });
     const auto before = [](const Entry& x, const Entry& y) { return x.a != y.a ? x.a < y.a : x.b < y.b; };
+    add_facets(snap, c);
     std::sort(pairs.begin(), pairs.end(), before);
     std::sort(walls.begin(), walls.end(), before);
     for (const Entry& e : pairs) {
@@ -109,6 +114,9 @@ std::uint64_t Simulation::state_hash() const {
         if (t.wall) sum += mix(mix(mix(3, a), t.j), t.history);
         else if (const std::uint32_t b = snap.id[t.j]; a > b) sum += mix(mix(mix(2, a), b), t.history);
         else sum += mix(mix(mix(2, b), a), -t.history);
+    });
+    snap.for_each_facet_memory([&](std::uint32_t i, std::uint32_t facet, const FacetState& state) {
+        sum += mix(mix(mix(mix(4, snap.id[i]), facet), state.history), state.side > 0 ? 1 : 2);
     });
     return sum;
 }
@@ -152,7 +160,25 @@ void Simulation::check_health() const {
             what = format("overlap of %.4g of the smaller radius, past the limit of %.4g (limits.overlap), of", ratio, s.scene.limits.overlap);
         }
     });
+    snap.for_each_facet_contact([&](const FacetTouch& c) {
+        const double ratio = c.overlap / snap.radius(c.i);
+        if (worst == n && ratio > s.scene.limits.overlap) {
+            worst = c.i;
+            what = format("overlap of %.4g of the radius, past the limit of %.4g (limits.overlap), with ", ratio, s.scene.limits.overlap) +
+                   surface_name(s.scene, c.surface) + " of";
+        }
+    });
+    if (const std::uint64_t crossed = s.state.facets.count() ? s.state.facets.crossed.to_host()[0] : ~0ull; worst == n && crossed != ~0ull) {
+        worst = static_cast<std::size_t>(std::find(snap.id.begin(), snap.id.end(), crossed >> 32) - snap.id.begin());
+        if (worst == n) return;
+        what = "went through " + surface_name(s.scene, static_cast<std::uint32_t>(crossed)) + ":";
+        remedy = "A particle must move less than its diameter in a step, and a contact holds until its overlap is the diameter: lower simulation.dt or "
+                 "raise the stiffness";
+    }
     if (worst == n) return;
+    snap.for_each_facet_contact([&](const FacetTouch& c) {
+        if (named < 4 && c.i == worst) neighbors += (named++ ? ", " : "") + surface_name(s.scene, c.surface) + format(" (overlap %.4g m)", c.overlap);
+    });
     snap.for_each_contact([&](const TouchingContact& c) {
         if (named == 4 || (c.i != worst && (c.wall || c.j != worst))) return;
         const std::string other = c.wall ? "plane '" + s.scene.planes[c.j].name + "'" : "particle " + std::to_string(snap.id[c.i == worst ? c.j : c.i]);

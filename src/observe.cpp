@@ -11,7 +11,7 @@ Snapshot::Snapshot(const State& s, ContactLaw contact_law)
       id(s.particles.id.to_host()),
       grain_offsets(s.grains.offsets.to_host()), wall_offsets(s.walls.offsets.to_host()), grain_partners(s.grains.partners.to_host()),
       wall_partners(s.walls.partners.to_host()), grain_history(s.grains.history.to_host()), wall_history(s.walls.history.to_host()),
-      planes(s.planes.to_host()), grain_parameters(s.grain_parameters.to_host()), wall_parameters(s.wall_parameters.to_host()),
+      planes(s.planes.to_host()), facets(s.facets), grain_parameters(s.grain_parameters.to_host()), wall_parameters(s.wall_parameters.to_host()),
       scale(s.particles.scale), period(s.period), period_lower(s.period_lower), block(s.block), materials(s.materials), law(contact_law) {}
 
 Vec3l Snapshot::position(std::size_t i) const {
@@ -105,6 +105,17 @@ Statistics Simulation::statistics() const {
         sides += c.wall ? 1 : 2;
         ++out.contacts;
     });
+    for (const Mesh& mesh : s.scene.meshes) out.surfaces.push_back({mesh.name, {}, {}, 0});
+    if (s.scene.terrain) out.surfaces.push_back({"terrain", {}, {}, 0});
+    snap.for_each_facet_contact([&](const FacetTouch& c) {
+        out.max_overlap_ratio = std::max(out.max_overlap_ratio, c.overlap / snap.radius(c.i));
+        SurfaceLoad& load = out.surfaces[c.surface];
+        load.force += c.on_surface;
+        load.torque += c.torque;
+        ++load.contacts;
+        ++sides;
+        ++out.contacts;
+    });
     out.coordination = sides / static_cast<double>(n);
     out.mean_neighbors = search().mean_neighbors;
     return out;
@@ -128,6 +139,10 @@ Frame Simulation::frame() const {
             ++coordination[c.j];
             force[c.j] += size;
         }
+    });
+    snap.for_each_facet_contact([&](const FacetTouch& c) {
+        ++coordination[c.i];
+        force[c.i] += length(c.force);
     });
     for (const std::uint32_t i : order) {
         const Body& b = snap.body[i];
@@ -171,7 +186,7 @@ std::size_t Simulation::memory_bytes() const {
     const Impl& s = *impl_;
     const Particles& p = s.state.particles;
     return p.near.bytes() + p.far.bytes() + p.body.bytes() + p.remainder.bytes() + s.state.frame.bytes() + p.id.bytes() + s.state.wrench.bytes() + s.state.built.bytes() +
-           s.state.grains.bytes() + s.state.walls.bytes() + s.old_grains.bytes() + s.old_walls.bytes() + s.old_index.bytes() + s.spheres.bytes() + s.search.memory_bytes();
+           s.state.grains.bytes() + s.state.walls.bytes() + s.old_grains.bytes() + s.old_walls.bytes() + s.old_index.bytes() + s.spheres.bytes() + s.search.memory_bytes() + s.state.facets.bytes();
 }
 
 }  // namespace grainray

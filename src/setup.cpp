@@ -2,8 +2,10 @@
 #include <algorithm>
 #include <numeric>
 
+#include "boundary/build.hpp"
 #include "contacts/laws.hpp"
 #include "exec/exec.hpp"
+#include "observe.hpp"
 #include "simulation_impl.hpp"
 
 namespace grainray {
@@ -112,17 +114,23 @@ Simulation::Impl::Impl(const Scene& s, const SimulationOptions& o, const Positio
     set_period(scene, state);
     search = NeighborSearch(options.device, search_options(scene, options, state, state.block));
 
-    std::vector<PairParameters> grains, walls;
+    std::vector<PairParameters> grains, walls, facets;
     double stiffest = 1;
     for (std::size_t a = 0; a < nm; ++a) {
         for (std::size_t b = 0; b < nm; ++b) grains.push_back(kernel_parameters(contact_parameters(scene, a, b, false)));
         for (const Plane& plane : scene.planes)
             walls.push_back(kernel_parameters(contact_parameters(scene, a, material_index(scene, plane.material), true)));
+        for (const Mesh& mesh : scene.meshes)
+            facets.push_back(kernel_parameters(contact_parameters(scene, a, material_index(scene, mesh.material), true)));
+        if (scene.terrain) facets.push_back(kernel_parameters(contact_parameters(scene, a, material_index(scene, scene.terrain->material), true)));
     }
-    for (const auto* table : {&grains, &walls})
+    for (const auto* table : {&grains, &walls, &facets})
         for (const PairParameters& p : *table) stiffest = std::max({stiffest, double{p.kn}, double{p.kt}});
     state.grain_parameters.assign(grains);
     state.wall_parameters.assign(walls);
+    state.facets.parameters.assign(facets);
+    build_facets(scene, scale, state.facets);
+    meshes_move = facets_move(scene);
 
     const double largest = sizes.radii.empty() ? 1 : *std::max_element(sizes.radii.begin(), sizes.radii.end());
     state.quanta = Quanta::for_scale(stiffest, largest);
@@ -231,6 +239,7 @@ Simulation::Simulation(const Scene& scene, const Checkpoint& c, const Simulation
     };
     OldLists(n, places(c.contact_a), places(c.contact_b), c.contact_history).store(impl_->state.grains);
     OldLists(n, places(c.wall_particle), c.wall_plane, c.wall_history).store(impl_->state.walls);
+    restore_facets(c, impl_->state.facets.list);
     impl_->step_number = c.step;
     impl_->prepare();
 }

@@ -3,6 +3,8 @@
 
 #include <chrono>
 
+#include "boundary/build.hpp"
+
 namespace grainray {
 namespace {
 
@@ -33,6 +35,7 @@ void Simulation::Impl::step() {
     {
         Timed timed(profile.boundary);
         stage.walls(state, law, constants);
+        if (state.facets.count()) stage.facets(state, law, constants, 0);
     }
     {
         Timed timed(profile.dynamics);
@@ -45,6 +48,7 @@ void Simulation::Impl::step() {
     ++step_number;
     ++steps_since_start;
     if (planes_move) place_planes();
+    if (meshes_move) place_facets(scene, state.particles.scale, step_number, 1, state.facets);
 }
 
 void Simulation::Impl::tune_interval() {
@@ -56,6 +60,7 @@ void Simulation::Impl::tune_interval() {
 
 void Simulation::Impl::prepare() {
     place_planes();
+    place_facets(scene, state.particles.scale, step_number, 1, state.facets);
     if (state.size()) threads.run([&] { update_lists(); });
 }
 
@@ -78,6 +83,10 @@ void Simulation::Impl::update_lists() {
     std::swap(state.walls, old_walls);
     stage.wall_candidates(state, constants, state.walls);
     stage.carry_walls(old_walls, old_index, state.walls);
+    if (state.facets.count()) {
+        stage.facet_candidates(state, constants);
+        stage.carry_facets(state, old_index);
+    }
 
     detail::copy(options.device, state.flags.data(), Device::cpu, std::array{~0u, ~0u}.data(), 2 * sizeof(std::uint32_t));
     state.age.steps = 0;

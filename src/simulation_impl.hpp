@@ -29,7 +29,7 @@ struct Simulation::Impl {
     std::uint64_t step_number = 0;
     std::uint64_t rebuilds = 0, steps_since_start = 0;
     double critical_dt = 0;
-    bool planes_move = false;
+    bool planes_move = false, meshes_move = false;
     Profile profile;
 
     Impl(const Scene&, const SimulationOptions&, const PositionScale&, const InitialState& sizes);
@@ -37,7 +37,7 @@ struct Simulation::Impl {
     void prepare();                          ///< planes and first lists, so that observers see contacts before any step
     void step();
     void update_lists();
-    void place_planes();                     ///< where they are at time()
+    void place_planes();                     ///< where planes and meshes are at time()
     void tune_interval();
     double time() const { return static_cast<double>(step_number) * scene.dt; }
 };

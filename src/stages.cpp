@@ -5,6 +5,7 @@
 
 namespace grainray::GRAINRAY_EXEC {
 
-const Stages stage_table{sort, margins, wall_candidates, carry_pairs, carry_walls, contacts, walls, integrate};
+const Stages stage_table{sort, margins, wall_candidates, carry_pairs, carry_walls, contacts, walls, integrate,
+                         facet_candidates, carry_facets, facets};
 
 }  // namespace grainray::GRAINRAY_EXEC

@@ -1,6 +1,7 @@
 // What a running simulation keeps on its device, and what its stages are told. Stages see nothing else.
 #pragma once
 
+#include "boundary/facets.hpp"
 #include "contacts/pair.hpp"
 #include "grainray/neighbors.hpp"
 
@@ -33,7 +34,7 @@ struct ListAge {
 struct State {
     explicit State(Device device)
         : particles(device), wrench(device), built(device), frame(device), grains(device), walls(device), grain_parameters(device),
-          wall_parameters(device), planes(device), flags(device, 2) {}
+          wall_parameters(device), planes(device), facets(device), flags(device, 2) {}
 
     Particles particles;
     Array<Wrench> wrench;   ///< sums of the step under way; the integrator leaves zeros
@@ -44,6 +45,7 @@ struct State {
     Array<PairParameters> grain_parameters;  ///< materials x materials
     Array<PairParameters> wall_parameters;   ///< materials x planes
     Array<PlaneNow> planes;
+    Facets facets;               ///< meshes and terrain
     Array<std::uint32_t> flags;  ///< [0] a particle past its margin, [1] a particle whose step is not finite; ~0: none
     std::uint32_t materials = 0;
     std::uint32_t block = 1;     ///< of ListKind::blocked
@@ -86,6 +88,12 @@ struct Stages {
     void (*walls)(State&, ContactLaw, const StepConstants&);
     /// Moves every particle; sets State::flags.
     void (*integrate)(State&, const StepConstants&, float trigger);
+
+    /// Meshes and terrain: rows of facets within reach until the list's limit; histories of the old rows into the new.
+    void (*facet_candidates)(State&, const StepConstants&);
+    void (*carry_facets)(State&, const Array<std::uint32_t>& old_index);
+    /// Adds to State::wrench of the particles that have a row. step: row of Facets::now.
+    void (*facets)(State&, ContactLaw, const StepConstants&, std::uint32_t step);
 };
 const Stages& stages(Device);
 

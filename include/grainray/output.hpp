@@ -59,6 +59,9 @@ struct Checkpoint {
     std::vector<Vec3f> contact_history;               ///< tangential elastic force on a, N
     std::vector<std::uint32_t> wall_particle, wall_plane;
     std::vector<Vec3f> wall_history;
+    std::vector<std::uint32_t> facet_particle, facet; ///< particle ids, ascending, and facets they touch (boundary/facets.hpp)
+    std::vector<float> facet_side;
+    std::vector<Vec3f> facet_history;
     std::string scene;                        ///< text of the scene it belongs to
 };
 

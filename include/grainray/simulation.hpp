@@ -29,6 +29,14 @@ struct SearchReport {
     double mean_margin_ratio = 0;  ///< mean margin / radius at the last rebuild
 };
 
+/// What the particles do to a mesh or the terrain at one instant.
+struct SurfaceLoad {
+    std::string name;
+    Vec3d force;                ///< N
+    Vec3d torque;               ///< about the point its motion turns about (the scene's origin without one), N m
+    std::uint64_t contacts = 0; ///< particles that touch it
+};
+
 /// Whole-system figures at one instant.
 struct Statistics {
     std::uint64_t step = 0;
@@ -43,7 +51,8 @@ struct Statistics {
     Vec3d lower, upper;                                    ///< bounds of the sphere surfaces, m
     double front_99 = 0;                                   ///< 99th percentile of the centres' x, m
     double mean_neighbors = 0;
-    std::uint64_t contacts = 0;                            ///< touching pairs, planes included
+    std::uint64_t contacts = 0;                            ///< touching pairs, planes, meshes and terrain included
+    std::vector<SurfaceLoad> surfaces;                     ///< meshes in the order of the scene, then the terrain
 };
 
 struct SimulationOptions {

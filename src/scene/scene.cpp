@@ -104,13 +104,14 @@ void read_pairs(const Node& root, Scene& s) {
 /// Everything a scene may hold at the top.
 void check_top(const Node& root) {
     std::vector<std::string_view> known{"simulation", "domain",    "contact", "search",    "output", "limits",
-                                        "render",     "materials", "pairs",   "particles", "planes"};
+                                        "render",     "materials", "pairs",   "particles", "planes", "meshes", "terrain"};
     append_keys(known, schema().top);
     check_keys(root, std::move(known));
 }
 
-Scene read_scene(const Node& root) {
+Scene read_scene(const Node& root, const std::filesystem::path& file) {
     Scene s;
+    s.file = file;  // relative paths start there
     check_top(root);
     read_fields(root, schema().top, s);
     read_simulation(root, s);
@@ -122,8 +123,10 @@ Scene read_scene(const Node& root) {
     read_render(root, s);
     read_materials(root, s);
     read_pairs(root, s);
+    if (root.has("terrain")) s.terrain = read_terrain(root.child("terrain"), s);
     for (const auto& [name, node] : named_tables(root, "particles")) s.particles.push_back(read_group(node, name, s));
     for (const auto& [name, node] : named_tables(root, "planes")) s.planes.push_back(read_plane(node, name, s));
+    for (const auto& [name, node] : named_tables(root, "meshes")) s.meshes.push_back(read_mesh(node, name, s));
     return s;
 }
 
@@ -155,8 +158,7 @@ void check_material(const Node& where, const std::string& name, const Scene& s) 
 Scene parse_scene(const std::string& text, const std::string& name, const std::vector<std::string>& overrides) {
     scene::Value document = scene::parse_document(text, name);
     for (const std::string& setting : overrides) scene::apply_override(document, setting);
-    Scene result = scene::read_scene({&document, document.place, ""});
-    result.file = name;
+    Scene result = scene::read_scene({&document, document.place, ""}, name);
     result.source = text;
     if (!overrides.empty() && !text.empty() && text.back() != '\n') result.source += '\n';
     for (const std::string& setting : overrides) result.source += "# --set " + setting + '\n';

@@ -135,18 +135,38 @@ void add_plane_tables(Schema& s) {
         field(&Plane::material, {.key = "material", .text = "name of its material", .required = true}),
         field(&Plane::point, {.key = "point", .text = "a point of the plane", .unit = unit::length}),
         field(&Plane::normal, {.key = "normal", .text = "direction towards the particles, any length"})}};
-    s.motion = {"planes.NAME.motion", "The plane stands still before `start` and, where it has got to, after `stop`.", {
+    s.motion = {"planes.NAME.motion, meshes.NAME.motion", "The boundary stands still before `start` and, where it has got to, after `stop`.", {
         field(&Motion::velocity, {.key = "velocity", .text = "constant velocity", .unit = unit::speed}),
         field(&Motion::start, {.key = "start", .text = "when the motion starts", .unit = unit::time, .range = non_negative, .typical = "0 s"}),
         field(&Motion::stop, {.key = "stop", .text = "when it stops", .unit = unit::time, .range = non_negative, .typical = "5 s", .fallback = "never"})}};
-    s.rotation = {"planes.NAME.motion.rotation", "Turns about an axis; velocity and oscillation carry the axis along.", {
+    s.rotation = {"planes.NAME.motion.rotation, meshes.NAME.motion.rotation", "Turns about an axis; velocity and oscillation carry the axis along.", {
         field(&Motion::rotation_axis, {.key = "axis", .text = "direction of the axis, any length", .typical = "[0, 1, 0]", .required = true}),
         field(&Motion::rotation_point, {.key = "point", .text = "a point of the axis", .unit = unit::length, .typical = "[0, 0, 0]", .required = true}),
         field(&Motion::rotation_rate, {.key = "rate", .text = "right-handed about the axis", .unit = unit::rotation, .typical = "10 rpm", .required = true})}};
-    s.oscillation = {"planes.NAME.motion.oscillation", "Shifts by amplitude (sin(2 pi frequency (t - start) + phase) - sin(phase)).", {
+    s.oscillation = {"planes.NAME.motion.oscillation, meshes.NAME.motion.oscillation", "Shifts by amplitude (sin(2 pi frequency (t - start) + phase) - sin(phase)).", {
         field(&Motion::oscillation_amplitude, {.key = "amplitude", .text = "with direction", .unit = unit::length, .typical = "[0, 0, 0.005]", .required = true}),
         field(&Motion::oscillation_frequency, {.key = "frequency", .text = "periods a second", .unit = unit::frequency, .range = positive, .typical = "10 Hz", .required = true}),
         field(&Motion::oscillation_phase, {.key = "phase", .text = "phase at the start", .unit = unit::angle})}};
+}
+
+void add_surface_tables(Schema& s) {
+    s.motion_path = {"planes.NAME.motion, meshes.NAME.motion, along a table", "", {
+        field(&PathRow::path, {.key = "path", .text = "CSV file with the columns t x y z in SI units: seconds after `start` and the shift from where the boundary was placed; "
+            "straight between rows, still before the first and after the last; relative to the scene file", .typical = "\"path.csv\""})}};
+    s.mesh_file = {"meshes.NAME", "A boundary of triangles. Both sides are solid: a particle stays on the side from which it came.", {
+        field(&MeshRow::file, {.key = "file", .text = "STL (text or binary) or OBJ; relative to the scene file", .typical = "\"funnel.stl\"", .required = true})}};
+    s.mesh = {"meshes.NAME, material and place", "Scaled first, then turned, then shifted.", {
+        field(&Mesh::material, {.key = "material", .text = "name of its material", .required = true}),
+        field(&Mesh::scale, {.key = "scale", .text = "metres a unit of the file; 0.001 for a file in millimetres", .range = positive, .typical = "1"}),
+        field(&Mesh::rotation, {.key = "rotation", .text = "angles about the x, then the y, then the z axis of the world, through the file's origin", .unit = unit::angle, .typical = "[\"90 deg\", 0, 0]"}),
+        field(&Mesh::translation, {.key = "translation", .text = "shift", .unit = unit::length, .typical = "[0, 0, 1]"})}};
+    s.terrain_files = {"terrain", "The ground as a grid of elevations; particles live above it.", {
+        field(&TerrainRow::after, {.key = "after", .text = "file with the ground: an ESRI ASCII grid, or anything GDAL reads where this build has it; relative to the scene file", .typical = "\"after.asc\"", .required = true}),
+        field(&TerrainRow::before, {.key = "before", .text = "file with the surface before the slide, on the same nodes: particles of type \"release\" fill what lies between", .typical = "\"before.asc\""})}};
+    s.terrain = {"terrain, material and shape", "", {
+        field(&Terrain::material, {.key = "material", .text = "name of its material", .required = true}),
+        field(&Terrain::smooth, {.key = "smooth", .text = "1: two facets a cell; n: every cell is first cut into n x n by cubic interpolation, which rounds the edges", .range = {1, 64}, .typical = "4"}),
+        field(&Terrain::edge, {.key = "edge", .text = "open: particles may leave the grid; walled: upright planes stand round it", .choices = {"open", "walled"}})}};
 }
 
 Schema make_schema() {
@@ -157,6 +177,7 @@ Schema make_schema() {
     add_particle_tables(s);
     add_size_tables(s);
     add_plane_tables(s);
+    add_surface_tables(s);
     return s;
 }
 

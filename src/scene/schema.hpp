@@ -18,6 +18,16 @@ struct PlacementRow {
 struct FileRow {
     std::string path;
 };
+struct PathRow {
+    std::optional<std::string> path;
+};
+struct MeshRow {
+    std::string file;
+};
+struct TerrainRow {
+    std::string after;
+    std::optional<std::string> before;
+};
 struct FillRow {
     Vec3d lower, upper;
     std::optional<std::int64_t> count;
@@ -51,7 +61,12 @@ struct Schema {
     Section<SizeRow> size;                      ///< the law alone
     std::array<Section<SizeRow>, 5> size_laws;  ///< the fields of each law, in the order of SizeLaw
     Section<Plane> plane;
+    Section<MeshRow> mesh_file;
+    Section<Mesh> mesh;
+    Section<TerrainRow> terrain_files;
+    Section<Terrain> terrain;
     Section<Motion> motion, rotation, oscillation;
+    Section<PathRow> motion_path;
 
     /// Calls visit(section) in the order of the docs.
     template <class Visit>
@@ -60,7 +75,8 @@ struct Schema {
         visit(render), visit(camera), visit(material), visit(pair), visit(placement), visit(group), visit(lattice);
         visit(list), visit(file), visit(fill), visit(size);
         for (const auto& law : size_laws) visit(law);
-        visit(plane), visit(motion), visit(rotation), visit(oscillation);
+        visit(plane), visit(mesh_file), visit(mesh), visit(terrain_files), visit(terrain);
+        visit(motion), visit(rotation), visit(oscillation), visit(motion_path);
     }
 };
 
