@@ -54,6 +54,7 @@ Checkpoint Simulation::checkpoint() const {
     c.dt = impl_->scene.dt;
     c.unit = snap.scale.unit;
     c.origin = snap.scale.origin;
+    c.largest_radius = impl_->largest_radius;
     c.scene = impl_->scene.source;
     c.state_hash = state_hash();
     std::vector<std::uint32_t> order(n);

@@ -1,9 +1,11 @@
 // A time step. Impl::step() is the table of contents of the whole program.
 #include "simulation_impl.hpp"
 
+#include <algorithm>
 #include <chrono>
 
 #include "boundary/build.hpp"
+#include "observe.hpp"
 
 namespace grainray {
 namespace {
@@ -109,16 +111,33 @@ void Simulation::Impl::place_planes() {
     if (!now.empty()) detail::copy(options.device, state.planes.data(), Device::cpu, now.data(), now.size() * sizeof(PlaneNow));
 }
 
-void Simulation::step() {
-    if (impl_->state.size()) impl_->threads.run([&] { impl_->step(); });
-    else ++impl_->step_number;
-}
+void Simulation::step() { run(1); }
 
 void Simulation::run(std::uint64_t steps) {
-    if (impl_->state.size() == 0) impl_->step_number += steps;
-    else impl_->threads.run([&] {
-        for (std::uint64_t k = 0; k < steps; ++k) impl_->step();
-    });
+    Impl& s = *impl_;
+    while (steps > 0) {
+        const std::uint64_t every = s.lost_every, batch = every ? std::min(steps, every - s.step_number % every) : steps;
+        if (s.state.size() == 0) s.step_number += batch;
+        else s.threads.run([&] {
+            for (std::uint64_t k = 0; k < batch; ++k) s.step();
+        });
+        steps -= batch;
+        if (every && s.step_number % every == 0) take_out_lost();
+    }
+}
+
+/// Rare, so by the way of a restart, which is exact: what remains is the state, less the lost.
+void Simulation::take_out_lost() {
+    Impl& s = *impl_;
+    if (s.state.size() == 0 || s.stage.count_lost(s.state, *s.region) == 0) return;
+    const Checkpoint all = checkpoint();
+    const PositionScale& scale = s.state.particles.scale;
+    std::vector<std::uint32_t> kept;
+    for (std::size_t i = 0; i < all.id.size(); ++i) {
+        if (!s.region->lost(scale.local(all.position[i]), all.radius_units[i] * scale.unit)) kept.push_back(static_cast<std::uint32_t>(i));
+        else s.lost.push_back({s.step_number, s.time(), all.id[i], scale.world(all.position[i]), all.velocity[i]});
+    }
+    s.load(only(all, kept));
 }
 
 std::size_t Simulation::size() const { return impl_->state.size(); }
@@ -128,5 +147,6 @@ double Simulation::dt() const { return impl_->scene.dt; }
 Device Simulation::device() const { return impl_->options.device; }
 const Profile& Simulation::profile() const { return impl_->profile; }
 Profile& Simulation::profile() { return impl_->profile; }
+const std::vector<LostParticle>& Simulation::lost() const { return impl_->lost; }
 
 }  // namespace grainray

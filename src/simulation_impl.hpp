@@ -2,6 +2,8 @@
 // observe.cpp (looking at it).
 #pragma once
 
+#include <optional>
+
 #include "exec/threads.hpp"
 #include "grainray/simulation.hpp"
 #include "neighbors/interval.hpp"
@@ -29,10 +31,15 @@ struct Simulation::Impl {
     std::uint64_t step_number = 0;
     std::uint64_t rebuilds = 0, steps_since_start = 0;
     double critical_dt = 0;
+    double largest_radius = 0;               ///< m, of all particles there ever were: it sets the quanta of forces
+    std::optional<LostRegion> region;        ///< of an open terrain
+    std::uint64_t lost_every = 0;            ///< steps between two looks for lost particles; 0: none can be lost
+    std::vector<LostParticle> lost;
     bool planes_move = false, meshes_move = false;
     Profile profile;
 
-    Impl(const Scene&, const SimulationOptions&, const PositionScale&, const InitialState& sizes);
+    Impl(const Scene&, const SimulationOptions&, const PositionScale&, const InitialState& sizes, double largest_radius = 0);
+    void load(const Checkpoint&);            ///< particles, histories and time
 
     void prepare();                          ///< planes and first lists, so that observers see contacts before any step
     void step();

@@ -94,6 +94,8 @@ struct Stages {
     void (*carry_facets)(State&, const Array<std::uint32_t>& old_index);
     /// Adds to State::wrench of the particles that have a row. step: row of Facets::now.
     void (*facets)(State&, ContactLaw, const StepConstants&, std::uint32_t step);
+    /// Particles that left an open terrain.
+    std::size_t (*count_lost)(const State&, const LostRegion&);
 };
 const Stages& stages(Device);
 

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 
 #include "grainray/output.hpp"
 #include "grainray/simulation.hpp"
@@ -37,6 +38,7 @@ private:
     void write_due();
     void write_frame();
     void write_history();
+    void write_lost();
     void write_checkpoint_now();
     std::uint64_t next_stop() const;
     void advance(std::uint64_t limit);
@@ -48,6 +50,8 @@ private:
     StopSignals signals_;
     Progress progress_;
     HistoryFile history_;
+    std::optional<HistoryFile> lost_;  ///< of an open terrain
+    std::size_t lost_written_ = 0;
     double seconds_per_step_ = 0;
     bool has_checkpoint_ = false;
     std::uint64_t checkpoint_step_ = 0;

@@ -49,6 +49,7 @@ struct Checkpoint {
     double time = 0, dt = 0;
     double unit = 0;                          ///< metres per fixed-point position unit
     Vec3d origin;                             ///< world position of fixed-point zero, m
+    double largest_radius = 0;                ///< of all particles there ever were, m
     std::uint64_t state_hash = 0;
     std::vector<std::uint32_t> id, material;
     std::vector<Vec3l> position;              ///< fixed point

@@ -80,11 +80,21 @@ struct RandomFill {
     double solid_fraction = 0;  ///< 0: until the count is reached
 };
 
+/// What slides: a lattice of equal particles between the ground and a surface above it.
+struct Release {
+    double spacing = 0;                  ///< m; 0: found for the count
+    std::int64_t count = 0;              ///< about so many particles; 0: as the spacing gives
+    double jitter = 0;                   ///< each is shifted by U(0, jitter) along x and y, m
+    double radius = 0;                   ///< m; 0: half of what the jitter leaves of the spacing
+    std::filesystem::path polygon_file;  ///< CSV with columns x y, or GeoJSON; empty: the surface is terrain.before
+    double thickness = 0;                ///< with a polygon: height of the surface over the ground, m
+};
+
 /// A named group of particles of one material.
 struct ParticleGroup {
     std::string name;
     std::string material;
-    std::variant<Lattice, ParticleList, ParticleFile, RandomFill> placement;
+    std::variant<Lattice, ParticleList, ParticleFile, RandomFill, Release> placement;
     SizeDistribution size;
     Vec3d velocity, angular_velocity;
 };
@@ -236,7 +246,7 @@ MaterialPair contact_parameters(const Scene&, std::size_t a, std::size_t b, bool
 TriangleMesh load_mesh(const Scene&, const Mesh&, MeshReport* = nullptr);
 /// The ground, refined where the scene asks for it. Throws InputError.
 ElevationGrid load_ground(const Scene&);
-/// The surface before the slide, on the nodes of the ground as its file has it. Throws InputError where they differ.
+/// The surface before the slide, refined as the ground. Throws InputError where its nodes are not those of the ground.
 ElevationGrid load_surface_before(const Scene&);
 
 /// How far a motion has got at time t: a point x has gone to point + shift + (x - point) turned by `angle` about `axis`,

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "grainray/device.hpp"
 #include "grainray/output.hpp"
@@ -55,6 +56,15 @@ struct Statistics {
     std::vector<SurfaceLoad> surfaces;                     ///< meshes in the order of the scene, then the terrain
 };
 
+/// A particle that left an open terrain and was taken out.
+struct LostParticle {
+    std::uint64_t step = 0;  ///< after which it was taken out
+    double time = 0;         ///< s
+    std::uint32_t id = 0;
+    Vec3d position;          ///< m
+    Vec3f velocity;          ///< m/s
+};
+
 struct SimulationOptions {
     Device device = Device::cpu;
     std::string backend = "auto";
@@ -80,6 +90,9 @@ public:
     double dt() const;
     Device device() const;
 
+    /// Particles taken out since this object was made, in the order in which they went.
+    const std::vector<LostParticle>& lost() const;
+
     Statistics statistics() const;
     Frame frame() const;
     Checkpoint checkpoint() const;
@@ -98,6 +111,7 @@ public:
 private:
     struct Impl;
     std::unique_ptr<Impl> impl_;
+    void take_out_lost();
 };
 
 /// Result of `grainray check`.

@@ -25,6 +25,8 @@ struct ElevationGrid {
     bool same_nodes(const ElevationGrid&) const;
     /// Height of the surface of triangles above a point; NaN outside and in holes.
     double height(double x, double y) const;
+    /// Length along the surface over length in the map, along the steepest way: 1 on the level.
+    double steepness(double x, double y) const;
     /// The same surface with every cell cut into factor x factor by cubic interpolation (Catmull-Rom): a smoother one.
     ElevationGrid refined(std::int64_t factor) const;
 };

@@ -26,7 +26,7 @@ struct FacetParticle {
 /// What the facets of one surface do to a particle, N and N m.
 struct FacetForce {
     Vec3d force, torque;
-    double overlap = 0;     ///< the largest of a facet with a real share, m
+    double overlap = 0;     ///< of the facet with most of its disc, or the mean over the disc areas, whichever is larger, m
     bool touching = false, crossed = false;
 };
 
@@ -64,6 +64,7 @@ struct FacetContact {
         FacetForce out;
         out.touching = look(v, out);
         if (out.touching) inherit(v);
+        out.overlap = particle.radius - v.distance;
         apply(v, out);
         return out;
     }
@@ -143,6 +144,7 @@ private:
             }
             state.side = static_cast<float>(s.rim ? (s.distance < 0 ? -1 : 1) : v.side);
             touch(now.turned(n), particle.radius - distance, weight, state.history, out);
+            if (s.share > 0.5f && particle.radius - distance > out.overlap) out.overlap = particle.radius - distance;
         }
     }
 
@@ -155,7 +157,6 @@ private:
         const Vec3f force = law(Contact{n, overlap, velocity, b.mass}, parameters, history);
         out.force += convert<double>(force) * weight;
         out.torque += convert<double>(cross(n, force) * -arm) * weight;
-        if (weight > 0.01 && depth > out.overlap) out.overlap = depth;
     }
 };
 

@@ -122,6 +122,10 @@ void carry_facets(State& s, const Array<std::uint32_t>& old_index) {
 
 namespace {
 
+struct Add {
+    GR_HD std::size_t operator()(std::size_t a, std::size_t b) const { return a + b; }
+};
+
 template <class Law>
 struct FacetForces {
     Law law;
@@ -167,6 +171,15 @@ struct FacetForces {
 };
 
 }  // namespace
+
+std::size_t count_lost(const State& s, const LostRegion& region) {
+    const auto near = s.particles.near.view();
+    const auto far = s.particles.far.view();
+    const double fine = s.particles.scale.fine(), unit = s.particles.scale.unit;
+    return reduce(s.size(), std::size_t{0}, [=] GR_HD(std::size_t i) -> std::size_t {
+        return region.lost(convert<double>(join(near[i], far[i])) * fine, near[i].radius * unit);
+    }, Add{});
+}
 
 void facets(State& s, ContactLaw law, const StepConstants& constants, std::uint32_t step) {
     Facets& f = s.facets;

@@ -21,6 +21,7 @@ void for_each_number(C& c, Visit visit) {
     visit("dt", c.dt);
     visit("unit", c.unit);
     visit("origin", c.origin);
+    visit("largest_radius", c.largest_radius);
     visit("state_hash", c.state_hash);
 }
 

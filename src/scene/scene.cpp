@@ -109,6 +109,17 @@ void check_top(const Node& root) {
     check_keys(root, std::move(known));
 }
 
+/// Upright planes at the outermost nodes, after all others, so that the numbers of those stay.
+void wall_terrain(Scene& s) {
+    const ElevationGrid g = load_ground(s);
+    const double east = g.x + g.dx * static_cast<double>(g.columns - 1), north = g.y + g.dy * static_cast<double>(g.rows - 1);
+    const std::string& material = s.terrain->material;
+    s.planes.push_back({"terrain west", material, {g.x, g.y, 0}, {1, 0, 0}, {}});
+    s.planes.push_back({"terrain east", material, {east, g.y, 0}, {-1, 0, 0}, {}});
+    s.planes.push_back({"terrain south", material, {g.x, g.y, 0}, {0, 1, 0}, {}});
+    s.planes.push_back({"terrain north", material, {g.x, north, 0}, {0, -1, 0}, {}});
+}
+
 Scene read_scene(const Node& root, const std::filesystem::path& file) {
     Scene s;
     s.file = file;  // relative paths start there
@@ -127,6 +138,7 @@ Scene read_scene(const Node& root, const std::filesystem::path& file) {
     for (const auto& [name, node] : named_tables(root, "particles")) s.particles.push_back(read_group(node, name, s));
     for (const auto& [name, node] : named_tables(root, "planes")) s.planes.push_back(read_plane(node, name, s));
     for (const auto& [name, node] : named_tables(root, "meshes")) s.meshes.push_back(read_mesh(node, name, s));
+    if (s.terrain && s.terrain->edge == TerrainEdge::walled) wall_terrain(s);
     return s;
 }
 

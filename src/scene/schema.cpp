@@ -82,7 +82,7 @@ void add_material_tables(Schema& s) {
 
 void add_particle_tables(Schema& s) {
     s.placement = {"particles.NAME", "A group of particles; its `type` says how they are placed.", {
-        field(&PlacementRow::type, {.key = "type", .text = "how the particles are placed", .choices = {"lattice", "list", "file", "fill"}, .required = true})}};
+        field(&PlacementRow::type, {.key = "type", .text = "how the particles are placed", .choices = {"lattice", "list", "file", "fill", "release"}, .required = true})}};
     s.group = {"particles.NAME, every type", "", {
         field(&ParticleGroup::material, {.key = "material", .text = "name of their material", .required = true}),
         field(&ParticleGroup::velocity, {.key = "velocity", .text = "at the start, where a list or a file gives no other", .unit = unit::speed}),
@@ -104,6 +104,16 @@ void add_particle_tables(Schema& s) {
         field(&FillRow::upper, {.key = "upper", .text = "upper corner of the box", .unit = unit::length, .required = true}),
         field(&FillRow::count, {.key = "count", .text = "number of particles", .range = up_to_2_31, .typical = "20000"}),
         field(&FillRow::solid_fraction, {.key = "solid_fraction", .text = "solid volume over volume of the box", .range = {0, 0.74, true, false}, .typical = "0.25"})}};
+}
+
+void add_release_table(Schema& s) {
+    s.release = {"particles.NAME, type = \"release\"", "What slides: equal particles in rows between the ground and terrain.before, or a layer of a given thickness inside a polygon. Needs one of spacing and count.", {
+        field(&ReleaseRow::spacing, {.key = "spacing", .text = "distance of neighbours; volume over spacing cubed is the number of particles", .unit = unit::length, .range = positive, .typical = "0.74 m"}),
+        field(&ReleaseRow::count, {.key = "count", .text = "about so many particles: the spacing is found for it", .range = {1, 2147483648.0}, .typical = "20000"}),
+        field(&ReleaseRow::jitter, {.key = "jitter", .text = "each particle is shifted along x and y by a random length from 0 to this", .unit = unit::length, .range = non_negative, .typical = "0.05 m"}),
+        field(&ReleaseRow::radius, {.key = "radius", .text = "of every particle", .unit = unit::length, .range = positive, .typical = "0.37 m", .fallback = "(spacing - jitter) / 2"}),
+        field(&ReleaseRow::polygon, {.key = "polygon", .text = "outline of what slides: CSV with the columns x y, or GeoJSON, in the coordinates of the terrain; relative to the scene file", .typical = "\"release.csv\""}),
+        field(&ReleaseRow::thickness, {.key = "thickness", .text = "of the layer inside the polygon, upright", .unit = unit::length, .range = positive, .typical = "2 m"})}};
 }
 
 void add_size_tables(Schema& s) {
@@ -175,6 +185,7 @@ Schema make_schema() {
     add_output_tables(s);
     add_material_tables(s);
     add_particle_tables(s);
+    add_release_table(s);
     add_size_tables(s);
     add_plane_tables(s);
     add_surface_tables(s);

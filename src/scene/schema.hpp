@@ -11,7 +11,7 @@ struct DomainRow {
     std::optional<Vec3d> lower, upper;
     std::array<bool, 3> periodic{};
 };
-enum class Placement { lattice, list, file, fill };
+enum class Placement { lattice, list, file, fill, release };
 struct PlacementRow {
     Placement type = Placement::lattice;
 };
@@ -27,6 +27,12 @@ struct MeshRow {
 struct TerrainRow {
     std::string after;
     std::optional<std::string> before;
+};
+struct ReleaseRow {
+    std::optional<double> spacing, radius, thickness;
+    std::optional<std::int64_t> count;
+    double jitter = 0;
+    std::optional<std::string> polygon;
 };
 struct FillRow {
     Vec3d lower, upper;
@@ -58,6 +64,7 @@ struct Schema {
     Section<ParticleList> list;
     Section<FileRow> file;
     Section<FillRow> fill;
+    Section<ReleaseRow> release;
     Section<SizeRow> size;                      ///< the law alone
     std::array<Section<SizeRow>, 5> size_laws;  ///< the fields of each law, in the order of SizeLaw
     Section<Plane> plane;
@@ -73,7 +80,7 @@ struct Schema {
     void each(Visit&& visit) const {
         visit(top), visit(simulation), visit(domain), visit(contact), visit(search), visit(output), visit(limits);
         visit(render), visit(camera), visit(material), visit(pair), visit(placement), visit(group), visit(lattice);
-        visit(list), visit(file), visit(fill), visit(size);
+        visit(list), visit(file), visit(fill), visit(release), visit(size);
         for (const auto& law : size_laws) visit(law);
         visit(plane), visit(mesh_file), visit(mesh), visit(terrain_files), visit(terrain);
         visit(motion), visit(rotation), visit(oscillation), visit(motion_path);

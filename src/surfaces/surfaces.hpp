@@ -25,7 +25,7 @@ void write_esri_grid(const std::filesystem::path&, const ElevationGrid&);
 /// the other way.
 TriangleMesh clean(TriangleMesh, MeshReport&);
 
-/// Triangles with their normals and rims, and the cells they stand in.
+/// Triangles with their normals, and the cells they stand in.
 struct CellGrid {
     Surface surface;                            ///< first and start are 0
     std::vector<Triangle> triangles;
