@@ -74,7 +74,12 @@ private:
     GR_HD bool look(Seen& v, FacetForce& out) const {
         double area = 0, height = 0, before = 0, side = 0;
         bool rim = false;
+        const double reach = particle.radius + length(v.step);
         for (std::uint32_t e = 0; e < entries.size; ++e) {
+            if (entries.states[e].side == 0 && shapes.apart(surface, entries.facets[e], v.x, reach)) {
+                entries.shares[e] = 0;
+                continue;
+            }
             const Triangle t = shapes.facet(surface, entries.facets[e]);
             const Section s = section(t, v.x, particle.radius);
             entries.shares[e] = s.share;
@@ -129,7 +134,7 @@ private:
         for (std::uint32_t e = 0; e < entries.size; ++e) {
             FacetState& state = entries.states[e];
             if (!(entries.shares[e] > 0)) {
-                state = FacetState{};
+                if (state.side != 0) state = FacetState{};
                 continue;
             }
             const Triangle t = shapes.facet(surface, entries.facets[e]);

@@ -119,6 +119,20 @@ struct FacetShapes {
         const std::uint32_t cell = (id - s.first) / 2, nx = static_cast<std::uint32_t>(s.nx);
         return half_cell(s, static_cast<std::int32_t>(cell % nx), static_cast<std::int32_t>(cell / nx), static_cast<int>((id - s.first) & 1));
     }
+    /// True only where the plane of a facet is farther than `reach` from x; cheaper than the facet itself.
+    GR_HD bool apart(const Surface& s, std::uint32_t id, const Vec3d& x, double reach) const {
+        if (!s.terrain) {
+            const double d = dot(triangles[id].normal, x - triangles[id].a);
+            return d > reach || d < -reach;
+        }
+        const std::uint32_t cell = (id - s.first) / 2, nx = static_cast<std::uint32_t>(s.nx);
+        const std::int32_t i = static_cast<std::int32_t>(cell % nx), j = static_cast<std::int32_t>(cell / nx);
+        const bool half = (id - s.first) & 1;
+        const double corner = height(s, i, j), opposite = height(s, i + 1, j + 1), side = half ? height(s, i, j + 1) : height(s, i + 1, j);
+        const double gx = (half ? opposite - side : side - corner) / s.width.x, gy = (half ? side - corner : opposite - side) / s.width.y;
+        const double above = x.z - corner - gx * (x.x - (s.lower.x + i * s.width.x)) - gy * (x.y - (s.lower.y + j * s.width.y));
+        return above * above > 1.000001 * reach * reach * (1 + gx * gx + gy * gy);
+    }
     /// Surface of a facet, searched from surface q on.
     GR_HD std::uint32_t surface_of(std::uint32_t id, std::uint32_t q) const {
         while (id >= surfaces[q].first + surfaces[q].count) ++q;

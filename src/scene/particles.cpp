@@ -60,12 +60,12 @@ Release read_release(const Node& table, const Scene& s) {
     read_fields(table, schema().release, row);
     if (row.spacing && row.count) fail_key(table, "count", "give spacing or count, not both");
     if (!row.spacing && !row.count) fail_key(table, "spacing", "a release needs one of spacing and count (a typical value is 0.74 m)");
+    if (row.spacing && row.jitter >= *row.spacing) fail_key(table, "jitter", fmt::format("must be less than the spacing ({} m)", *row.spacing));
     if (!s.terrain) fail_key(table, "type", "a release lies on terrain; add a table [terrain] with the ground");
     if (row.polygon.has_value() != row.thickness.has_value())
         fail_key(table, row.polygon ? "polygon" : "thickness", fmt::format("a layer needs both outline and thickness; add '{}'", row.polygon ? "thickness" : "polygon"));
     if (!row.polygon && s.terrain->before_file.empty())
         fail_key(table, "type", "needs terrain.before, the surface before the slide, or polygon and thickness here");
-    if (row.spacing && row.jitter >= *row.spacing) fail_key(table, "jitter", fmt::format("must be less than the spacing ({} m)", *row.spacing));
     return {row.spacing.value_or(0), row.count.value_or(0), row.jitter, row.radius.value_or(0), row.polygon.value_or(""), row.thickness.value_or(0)};
 }
 

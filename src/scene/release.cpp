@@ -13,6 +13,8 @@
 namespace grainray::scene {
 namespace {
 
+constexpr double directions[8][2] = {{1, 0}, {-1, 0}, {0, 1}, {0, -1}, {0.7071, 0.7071}, {-0.7071, 0.7071}, {0.7071, -0.7071}, {-0.7071, -0.7071}};
+
 class Slide {
 public:
     Slide(const Scene& scene, const ParticleGroup& group, const Release& release) : ground_(load_ground(scene)), thickness_(release.thickness) {
@@ -68,6 +70,17 @@ public:
     }
     const ElevationGrid& ground() const { return ground_; }
 
+    /// Lowest centre of a sphere above a point that does not reach into the ground around it.
+    double resting_height(double x, double y, double radius) const {
+        double lowest = ground_.height(x, y) + radius * ground_.steepness(x, y);
+        for (const double part : {0.4, 0.7, 0.95})
+            for (int k = 0; k < 8; ++k) {
+                const double dx = part * radius * directions[k][0], dy = part * radius * directions[k][1], z = ground_.height(x + dx, y + dy);
+                if (!std::isnan(z)) lowest = std::max(lowest, z + radius * std::sqrt(1 - part * part));
+            }
+        return lowest;
+    }
+
 private:
     void bound_by_outline(const std::string& place) {
         lower_ = outline_->lower();
@@ -118,7 +131,7 @@ void place_release(const Scene& scene, const ParticleGroup& group, const Release
     std::uint64_t n = 0;
     slide.each_column(spacing, [&](double column_x, double column_y, std::int64_t number) {
         const double steep = slide.ground().steepness(column_x, column_y), rise = std::sqrt(2 * (steep * steep - 1)) * release.jitter;
-        const double lowest = slide.ground().height(column_x, column_y) + radius * steep + rise;
+        const double lowest = slide.resting_height(column_x, column_y, radius) + rise;
         for (std::int64_t k = 0; k < number; ++k, ++n) {
             double x = column_x + release.jitter * random.uniform(2 * n), y = column_y + release.jitter * random.uniform(2 * n + 1);
             if (std::isnan(slide.ground().height(x, y))) x = column_x, y = column_y;  // shifted off the ground

@@ -67,7 +67,7 @@ TriangleMesh read_mesh_file(const std::filesystem::path& path, const std::string
     }
     if (!m.triangles.empty()) return m;
     std::string why = importer.GetErrorString();
-    throw InputError(place + (why.empty() || why.find("empty") != std::string::npos ? "it holds no triangle; give a file with a surface of triangles"
+    throw InputError(place + (why.empty() || why.find("empty") != std::string::npos || why.find("No output meshes") != std::string::npos ? "it holds no triangle; give a file with a surface of triangles"
                                                                                        : "it cannot be read as a mesh (" + why + "); export it again as binary STL"));
 }
 

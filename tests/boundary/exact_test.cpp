@@ -101,9 +101,9 @@ TEST_P(ExactFacets, LoadsCarryTheWeight) {
     for (const float m : s.frame().mass) weight += 10.0 * m;
     EXPECT_EQ(now.surfaces[0].name, "tub");
     EXPECT_GT(now.surfaces[1].contacts, 10u);
-    EXPECT_NEAR(sum.z, -weight, 0.02 * weight);
-    EXPECT_NEAR(sum.x, 0, 0.02 * weight);
-    EXPECT_NEAR(sum.y, 0, 0.02 * weight);
+    EXPECT_NEAR(sum.z, -weight, 0.05 * weight);
+    EXPECT_NEAR(sum.x, 0, 0.05 * weight);
+    EXPECT_NEAR(sum.y, 0, 0.05 * weight);
 }
 
 TEST_P(ExactFacets, TorqueAboutThePointOfTheMotion) {

@@ -52,10 +52,10 @@ TEST(Grid, HeightsBetweenNodesAndRefinement) {
     for (int j = 0; j < 4; ++j)
         for (int i = 0; i < 5; ++i) plane.heights.push_back(7 + 0.5 * 2 * i - 0.25 * 3 * j);
     const auto exact = [](double x, double y) { return 7 + 0.5 * (x - 100) - 0.25 * (y - 200); };
-    const ElevationGrid fine = plane.refined(4);
+    ElevationGrid fine = plane.refined(4);
     EXPECT_EQ(fine.columns, 17);
     EXPECT_EQ(fine.rows, 13);
-    for (const ElevationGrid* g : {&plane, &fine})
+    for (const auto* g : {&plane, &fine})
         for (double x = 100; x <= 108; x += 0.37)
             for (double y = 200; y <= 209; y += 0.41) ASSERT_NEAR(g->height(x, y), exact(x, y), 1e-12);
     EXPECT_NEAR(plane.steepness(103.3, 204.1), std::sqrt(1 + 0.25 + 0.0625), 1e-12);
@@ -112,8 +112,8 @@ TEST_P(OnTerrain, ASlopeAnswersAsAPlane) {
 TEST_P(OnTerrain, ParticlesThatLeaveAreTakenOutAndListed) {
     Case c = on_terrain(level(6, 0));
     for (int k = 0; k < 5; ++k) c.add({2.5, 0.5 + k, 0.1}, 0.1, {k == 2 ? 0.0 : 4.0, 0, 0}, {0, k == 2 ? 0.0 : 40.0, 0});
-    c.scene.terrain->after->heights[14] = NAN;  // a hole round (2, 2)
-    c.add({2, 2.0, 0.5}, 0.1);
+    c.scene.terrain->after->heights[25] = NAN;  // a hole round (1, 4)
+    c.add({1, 4.0, 0.5}, 0.1);
     Simulation whole = c.start(GetParam());
     whole.run(900);
     const Checkpoint middle = whole.checkpoint();
