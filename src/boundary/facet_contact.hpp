@@ -70,6 +70,8 @@ struct FacetContact {
     }
 
 private:
+    static constexpr float touched_by_rim = 2;
+
     /// Shares, mean distance, side; and whether the particle went through a facet since the step before.
     GR_HD bool look(Seen& v, FacetForce& out) const {
         double area = 0, height = 0, before = 0, side = 0;
@@ -82,7 +84,7 @@ private:
             }
             const Triangle t = shapes.facet(surface, entries.facets[e]);
             const Section s = section(t, v.x, particle.radius);
-            entries.shares[e] = s.share;
+            entries.shares[e] = s.rim ? touched_by_rim : s.share;
             const double step = dot(t.normal, v.step), was = entries.states[e].side;
             if (side == 0) side = was;
             rim = rim || s.rim;
@@ -138,18 +140,19 @@ private:
                 continue;
             }
             const Triangle t = shapes.facet(surface, entries.facets[e]);
-            const Section s = section(t, v.x, particle.radius);
+            const bool rim = entries.shares[e] == touched_by_rim;
+            const double height = dot(t.normal, v.x - t.a);
             Vec3d n = t.normal * v.side;
-            double distance = v.side * s.distance, weight = s.share * ((particle.radius + distance) / (particle.radius + v.distance));
-            if (s.rim) {
-                const Vec3d apart = v.x - s.nearest;
+            double distance = v.side * height, weight = entries.shares[e] * ((particle.radius + distance) / (particle.radius + v.distance));
+            if (rim) {
+                const Vec3d apart = v.x - section(t, v.x, particle.radius).nearest;
                 distance = length(apart);
                 n = apart * (1 / (distance > 0 ? distance : 1));
                 weight = 1;
             }
-            state.side = static_cast<float>(s.rim ? (s.distance < 0 ? -1 : 1) : v.side);
+            state.side = static_cast<float>(rim ? (height < 0 ? -1 : 1) : v.side);
             touch(now.turned(n), particle.radius - distance, weight, state.history, out);
-            if (s.share > 0.5f && particle.radius - distance > out.overlap) out.overlap = particle.radius - distance;
+            if (entries.shares[e] > 0.5f && particle.radius - distance > out.overlap) out.overlap = particle.radius - distance;
         }
     }
 

@@ -35,12 +35,21 @@ GR_HD inline EdgeView edge_view(const Triangle& t, int edge, const Vec3d& x) {
     return {dot(cross(t.normal, direction), p), first, first + size};
 }
 
+/// Which side of a band of half-width `width` round an edge's line a point is on: +1 inside, -1 outside, 0 in the band or
+/// too near to it for rounding. No root is taken.
+GR_HD inline int beside_edge(const Triangle& t, int edge, const Vec3d& x, double square_width) {
+    const Vec3d &from = t.corner(edge), along = t.corner(edge == 2 ? 0 : edge + 1) - from;
+    const double height = dot(cross(t.normal, along), x - from);
+    if (!(height * height > square_width * dot(along, along) * (1 + 1e-9))) return 0;
+    return height > 0 ? 1 : -1;
+}
+
 /// Could any point of the triangle lie within `reach` of x? Never false where one does.
 GR_HD inline bool within_reach(const Triangle& t, const Vec3d& x, double reach) {
     const double distance = dot(t.normal, x - t.a);
     if (!(distance < reach && distance > -reach)) return false;
     for (int edge = 0; edge < 3; ++edge)
-        if (edge_view(t, edge, x).height < -reach) return false;
+        if (beside_edge(t, edge, x, reach * reach) < 0) return false;
     return true;
 }
 
@@ -73,7 +82,6 @@ struct Section {
     double distance = 0;  ///< of the centre from the plane, positive where the normal points
     float share = 0;      ///< of the disc, 0 to 1: the triangle is touched where it is positive
     bool rim = false;     ///< touched at a free edge, by the point `nearest`
-    bool above = false;   ///< the foot of the centre lies in the triangle
     Vec3d nearest;
 };
 
@@ -83,15 +91,20 @@ GR_HD inline Section section(const Triangle& t, const Vec3d& x, double radius) {
     Section s;
     s.distance = dot(t.normal, x - t.a);
     const double square = (radius - s.distance) * (radius + s.distance);
-    s.above = true;
     if (!(square > 0)) return s;
     const double disc_radius = sqrt(square), inverse = 1 / disc_radius;
     float cut = 0;
     double rim_height = -disc_radius;
-    bool apart = false;
+    bool apart = false, above = true;
     for (int edge = 0; edge < 3; ++edge) {
+        const int beside = beside_edge(t, edge, x, square);
+        if (beside > 0) continue;
+        if (beside < 0) {
+            s.rim = false;
+            return s;
+        }
         const EdgeView e = edge_view(t, edge, x);
-        s.above = s.above && e.height >= 0;
+        above = above && e.height >= 0;
         apart = apart || e.height <= -disc_radius;
         if (!t.is_free(edge)) {
             cut += disc::cut_off(e, inverse);
@@ -102,7 +115,7 @@ GR_HD inline Section section(const Triangle& t, const Vec3d& x, double radius) {
             s.nearest = from + along * (-e.first / (e.last - e.first));
         }
     }
-    const float share = (s.above ? 1.0f : 0.0f) - cut;
+    const float share = (above ? 1.0f : 0.0f) - cut;
     s.rim = s.rim && !apart;
     s.share = s.rim ? 1.0f : apart || share < 0 ? 0.0f : share;
     return s;
