@@ -1,35 +1,28 @@
 // The exact state of a run: checkpoint, hash, and whether it still makes sense.
 #include <algorithm>
-#include <bit>
+#include <limits>
 #include <cstdio>
 #include <numeric>
 
+#include "mix.hpp"
 #include "observe.hpp"
 
 namespace grainray {
 namespace {
-
-/// Finaliser of MurmurHash3 (Appleby), chained.
-std::uint64_t mix(std::uint64_t h, std::uint64_t value) {
-    h ^= value + 0x9e3779b97f4a7c15ull;
-    h = (h ^ h >> 33) * 0xff51afd7ed558ccdull;
-    h = (h ^ h >> 33) * 0xc4ceb9fe1a85ec53ull;
-    return h ^ h >> 33;
-}
-std::uint64_t mix(std::uint64_t h, const Vec3f& v) {
-    for (int a = 0; a < 3; ++a) h = mix(h, std::bit_cast<std::uint32_t>(v[a] + 0.0f));  // -0 and 0 are one value
-    return h;
-}
-std::uint64_t mix(std::uint64_t h, const Vec3l& v) {
-    for (int a = 0; a < 3; ++a) h = mix(h, static_cast<std::uint64_t>(v[a]));
-    return h;
-}
 
 /// The axis along which a centre is outside the domain (0, 1, 2), or -1; periodic axes have no outside.
 int axis_left(const Domain& domain, const Vec3d& x) {
     for (int a = 0; domain.box && a < 3; ++a)
         if (!domain.periodic[a] && !(x[a] >= domain.box->lower[a] && x[a] <= domain.box->upper[a])) return a;
     return -1;
+}
+
+/// The lower (side -1) or upper (side 1) corner; infinite where nothing can be left.
+Vec3d domain_corner(const Domain& domain, int side) {
+    Vec3d corner;
+    for (int a = 0; a < 3; ++a)
+        corner[a] = domain.box && !domain.periodic[a] ? (side < 0 ? domain.box->lower : domain.box->upper)[a] : side * std::numeric_limits<double>::infinity();
+    return corner;
 }
 
 std::string surface_name(const Scene& scene, std::uint32_t surface) {
@@ -100,44 +93,32 @@ Checkpoint Simulation::checkpoint() const {
     return c;
 }
 
-/// A sum over particles and contacts of hashes keyed by id: the order of storage does not matter.
 std::uint64_t Simulation::state_hash() const {
-    const Snapshot snap(impl_->state, impl_->law);
-    std::uint64_t sum = mix(0, impl_->step_number);
-    for (std::size_t i = 0; i < snap.size(); ++i) {
-        std::uint64_t h = mix(mix(1, snap.id[i]), snap.position(i));
-        h = mix(mix(mix(h, snap.body[i].velocity), snap.remainder[i]), snap.body[i].spin);
-        sum += mix(h, static_cast<std::uint64_t>(snap.near[i].radius));
-    }
-    snap.for_each_contact([&](const TouchingContact& t) {
-        if (t.history == Vec3f{}) return;
-        const std::uint32_t a = snap.id[t.i];
-        if (t.wall) sum += mix(mix(mix(3, a), t.j), t.history);
-        else if (const std::uint32_t b = snap.id[t.j]; a > b) sum += mix(mix(mix(2, a), b), t.history);
-        else sum += mix(mix(mix(2, b), a), -t.history);
-    });
-    snap.for_each_facet_memory([&](std::uint32_t i, std::uint32_t facet, const FacetState& state) {
-        sum += mix(mix(mix(mix(4, snap.id[i]), facet), state.history), state.side > 0 ? 1 : 2);
-    });
-    return sum;
+    const Impl& s = *impl_;
+    if (s.state.size() == 0) return mix(0, s.step_number);
+    return mix(0, s.step_number) + s.stage.hash(s.state) + (s.state.facets.count() ? s.stage.hash_facets(s.state) : 0);
 }
 
 void Simulation::check_health() const {
     const Impl& s = *impl_;
+    if (s.state.size() == 0) return;
+    const double speed_limit = s.scene.limits.speed > 0 ? s.scene.limits.speed : s.smallest_radius / s.scene.dt;
+    const auto flags = s.state.flags.to_host();
+    const bool every_step_finite = s.rebuilds == 0 || flags[1] == ~0u;
+    const std::uint64_t crossed = s.state.facets.count() ? s.state.facets.crossed.to_host()[0] : ~0ull;
+    bool surfaces_hold = crossed == ~0ull;
+    for (std::uint32_t q = 0; q < s.state.facets.count(); ++q)
+        surfaces_hold = surfaces_hold && s.stage.surface_totals(s.state, s.law, q).max_overlap_ratio <= s.scene.limits.overlap;
+    if (every_step_finite && surfaces_hold && s.stage.healthy(s.state, {speed_limit, s.scene.limits.overlap, domain_corner(s.scene.domain, -1), domain_corner(s.scene.domain, 1)})) return;
     const Snapshot snap(s.state, s.law);
     const std::size_t n = snap.size();
-    if (n == 0) return;
-    double smallest = snap.radius(0);
-    for (std::size_t i = 1; i < n; ++i) smallest = std::min(smallest, snap.radius(i));
-    const double speed_limit = s.scene.limits.speed > 0 ? s.scene.limits.speed : smallest / s.scene.dt;
 
     std::size_t worst = n;
     std::string what;
     std::string remedy = s.critical_dt > 0 && s.scene.dt > s.critical_dt
                              ? "Lower simulation.dt"
                              : "Look for particles placed inside each other, or lower simulation.dt or the stiffness";
-    const auto flags = s.state.flags.to_host();
-    if (s.rebuilds && flags[1] < n) {
+    if (!every_step_finite) {
         worst = flags[1];
         what = "the step of";
     }
@@ -169,9 +150,8 @@ void Simulation::check_health() const {
                    surface_name(s.scene, c.surface) + " of";
         }
     });
-    if (const std::uint64_t crossed = s.state.facets.count() ? s.state.facets.crossed.to_host()[0] : ~0ull; worst == n && crossed != ~0ull) {
+    if (worst == n && crossed != ~0ull) {
         worst = static_cast<std::size_t>(std::find(snap.id.begin(), snap.id.end(), crossed >> 32) - snap.id.begin());
-        if (worst == n) return;
         what = "went through " + surface_name(s.scene, static_cast<std::uint32_t>(crossed)) + ":";
         remedy = "A particle must move less than its diameter in a step, and a contact holds until its overlap is the diameter: lower simulation.dt or "
                  "raise the stiffness";

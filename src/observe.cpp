@@ -1,6 +1,8 @@
 // Looking at a simulation: snapshots, statistics, frames.
 #include "observe.hpp"
 
+#include "exec/cpu.hpp"
+
 #include <algorithm>
 #include <numeric>
 
@@ -9,21 +11,18 @@ namespace grainray {
 Snapshot::Snapshot(const State& s, ContactLaw contact_law)
     : near(s.particles.near.to_host()), far(s.particles.far.to_host()), body(s.particles.body.to_host()), remainder(s.particles.remainder.to_host()),
       id(s.particles.id.to_host()),
-      grain_offsets(s.grains.offsets.to_host()), wall_offsets(s.walls.offsets.to_host()), grain_partners(s.grains.partners.to_host()),
-      wall_partners(s.walls.partners.to_host()), grain_history(s.grains.history.to_host()), wall_history(s.walls.history.to_host()),
+      wall_offsets(s.walls.offsets.to_host()), wall_partners(s.walls.partners.to_host()), wall_history(s.walls.history.to_host()),
       planes(s.planes.to_host()), facets(s.facets), grain_parameters(s.grain_parameters.to_host()), wall_parameters(s.wall_parameters.to_host()),
-      scale(s.particles.scale), period(s.period), period_lower(s.period_lower), block(s.block), materials(s.materials), law(contact_law) {}
-
-Vec3l Snapshot::position(std::size_t i) const {
-    Vec3l p = join(near[i], far[i]);
-    for (int a = 0; a < 3; ++a) {
-        const std::int64_t width = period[a] << fine_bits;
-        if (width == 0) continue;
-        const std::int64_t r = (p[a] - period_lower[a]) % width;
-        p[a] = period_lower[a] + (r < 0 ? r + width : r);
-    }
-    return p;
+      scale(s.particles.scale), period(s.period), period_lower(s.period_lower), block(s.block), materials(s.materials), law(contact_law) {
+    if (s.size() == 0) return;
+    ContactList pairs(s.particles.near.device());
+    stages(pairs.offsets.device()).touching(s, pairs);
+    grain_offsets = pairs.offsets.to_host();
+    grain_partners = pairs.partners.to_host();
+    grain_history = pairs.history.to_host();
 }
+
+Vec3l Snapshot::position(std::size_t i) const { return into_box(join(near[i], far[i]), period, period_lower); }
 
 namespace {
 
@@ -70,92 +69,71 @@ void Snapshot::for_each_contact(const std::function<void(const TouchingContact&)
 
 Statistics Simulation::statistics() const {
     const Impl& s = *impl_;
-    const Snapshot snap(s.state, s.law);
     Statistics out;
     out.step = s.step_number;
     out.time = s.time();
-    const std::size_t n = snap.size();
-    if (n == 0) return out;
-    std::vector<double> xs(n);
-    out.lower = {1e300, 1e300, 1e300};
-    out.upper = -out.lower;
-    for (std::size_t i = 0; i < n; ++i) {
-        const Body& b = snap.body[i];
-        const Vec3d x = snap.scale.world(snap.position(i)), v = convert<double>(b.velocity), w = convert<double>(b.spin);
-        const double m = b.mass, r = snap.radius(i), inertia = 0.4 * m * r * r;
-        out.kinetic_translation += 0.5 * m * dot(v, v);
-        out.kinetic_rotation += 0.5 * inertia * dot(w, w);
-        out.potential -= m * dot(s.scene.gravity, x);
-        out.momentum += v * m;
-        out.angular_momentum += cross(x, v) * m + w * inertia;
-        out.max_speed = std::max(out.max_speed, length(v));
-        xs[i] = x.x;
-        for (int a = 0; a < 3; ++a) {
-            out.lower[a] = std::min(out.lower[a], x[a] - r);
-            out.upper[a] = std::max(out.upper[a], x[a] + r);
-        }
+    if (s.state.size() == 0) return out;
+    const Totals t = s.stage.totals(s.state, s.scene.gravity);
+    out.kinetic_translation = t.kinetic_translation;
+    out.kinetic_rotation = t.kinetic_rotation;
+    out.potential = t.potential;
+    out.momentum = t.momentum;
+    out.angular_momentum = t.angular_momentum;
+    out.max_speed = t.max_speed;
+    out.lower = t.lower;
+    out.upper = t.upper;
+    out.front_99 = s.stage.quantile_x(s.state, 0.99);
+    out.max_overlap_ratio = t.max_overlap_ratio;
+    out.contacts = t.contacts;
+    double sides = t.contact_sides;
+    for (std::uint32_t q = 0; q < s.state.facets.count(); ++q) {
+        const SurfaceTotals on = s.stage.surface_totals(s.state, s.law, q);
+        out.surfaces.push_back({q < s.scene.meshes.size() ? s.scene.meshes[q].name : "terrain", on.force, on.torque, on.contacts});
+        out.max_overlap_ratio = std::max(out.max_overlap_ratio, on.max_overlap_ratio);
+        out.contacts += on.contacts;
+        sides += static_cast<double>(on.contacts);
     }
-    const auto p99 = xs.begin() + static_cast<std::ptrdiff_t>(std::min(n - 1, static_cast<std::size_t>(0.99 * static_cast<double>(n))));
-    std::nth_element(xs.begin(), p99, xs.end());
-    out.front_99 = *p99;
-    double sides = 0;
-    snap.for_each_contact([&](const TouchingContact& c) {
-        const double smaller = c.wall ? snap.radius(c.i) : std::min(snap.radius(c.i), snap.radius(c.j));
-        out.max_overlap_ratio = std::max(out.max_overlap_ratio, c.overlap / smaller);
-        sides += c.wall ? 1 : 2;
-        ++out.contacts;
-    });
-    for (const Mesh& mesh : s.scene.meshes) out.surfaces.push_back({mesh.name, {}, {}, 0});
-    if (s.scene.terrain) out.surfaces.push_back({"terrain", {}, {}, 0});
-    snap.for_each_facet_contact([&](const FacetTouch& c) {
-        out.max_overlap_ratio = std::max(out.max_overlap_ratio, c.overlap / snap.radius(c.i));
-        SurfaceLoad& load = out.surfaces[c.surface];
-        load.force += c.on_surface;
-        load.torque += c.torque;
-        ++load.contacts;
-        ++sides;
-        ++out.contacts;
-    });
-    out.coordination = sides / static_cast<double>(n);
+    out.coordination = sides / static_cast<double>(s.state.size());
     out.mean_neighbors = search().mean_neighbors;
     return out;
 }
 
 Frame Simulation::frame() const {
-    const Snapshot snap(impl_->state, impl_->law);
-    const std::size_t n = snap.size();
+    const Impl& s = *impl_;
+    const Particles& p = s.state.particles;
+    const std::size_t n = s.state.size();
     Frame f;
-    f.step = impl_->step_number;
-    f.time = impl_->time();
-    std::vector<std::uint32_t> order(n), coordination(n, 0);
-    std::vector<float> force(n, 0);
+    f.step = s.step_number;
+    f.time = s.time();
+    if (n == 0) return f;
+    ContactFields fields(s.options.device);
+    s.stage.contact_fields(s.state, s.law, fields);
+    if (s.state.facets.count()) s.stage.facet_fields(s.state, s.law, fields);
+    const auto near = p.near.to_host();
+    const auto far = p.far.to_host();
+    const auto body = p.body.to_host();
+    const auto id = p.id.to_host();
+    const auto coordination = fields.coordination.to_host();
+    const auto force = fields.force.to_host();
+    std::vector<std::uint32_t> order(n);
     std::iota(order.begin(), order.end(), 0u);
-    std::sort(order.begin(), order.end(), [&](auto a, auto b) { return snap.id[a] < snap.id[b]; });
-    snap.for_each_contact([&](const TouchingContact& c) {
-        const float size = length(c.force);
-        ++coordination[c.i];
-        force[c.i] += size;
-        if (!c.wall) {
-            ++coordination[c.j];
-            force[c.j] += size;
-        }
+    std::sort(order.begin(), order.end(), [&](auto a, auto b) { return id[a] < id[b]; });
+    for (auto* v : {&f.id, &f.material, &f.coordination}) v->resize(n);
+    for (auto* v : {&f.radius, &f.mass, &f.contact_force}) v->resize(n);
+    for (auto* v : {&f.velocity, &f.angular_velocity}) v->resize(n);
+    f.position.resize(n);
+    cpu::for_each(n, [&](std::size_t k) {
+        const std::uint32_t i = order[k];
+        f.id[k] = id[i];
+        f.material[k] = body[i].material;
+        f.coordination[k] = coordination[i];
+        f.position[k] = p.scale.world(into_box(join(near[i], far[i]), s.state.period, s.state.period_lower));
+        f.radius[k] = static_cast<float>(near[i].radius * p.scale.unit);
+        f.mass[k] = body[i].mass;
+        f.contact_force[k] = static_cast<float>(static_cast<double>(force[i]) * s.state.quanta.force);
+        f.velocity[k] = body[i].velocity;
+        f.angular_velocity[k] = body[i].spin;
     });
-    snap.for_each_facet_contact([&](const FacetTouch& c) {
-        ++coordination[c.i];
-        force[c.i] += length(c.force);
-    });
-    for (const std::uint32_t i : order) {
-        const Body& b = snap.body[i];
-        f.id.push_back(snap.id[i]);
-        f.material.push_back(b.material);
-        f.coordination.push_back(coordination[i]);
-        f.position.push_back(snap.scale.world(snap.position(i)));
-        f.radius.push_back(static_cast<float>(snap.radius(i)));
-        f.mass.push_back(b.mass);
-        f.contact_force.push_back(force[i]);
-        f.velocity.push_back(b.velocity);
-        f.angular_velocity.push_back(b.spin);
-    }
     return f;
 }
 
@@ -166,19 +144,10 @@ SearchReport Simulation::search() const {
     r.reason = s.search.reason();
     r.rebuilds = s.rebuilds;
     if (s.rebuilds) r.mean_interval_steps = static_cast<double>(s.steps_since_start) / static_cast<double>(s.rebuilds);
-    const std::size_t n = s.state.size();
-    if (n == 0 || s.rebuilds == 0) return r;
-    const auto offsets = s.state.grains.offsets.to_host();
-    const auto partners = s.state.grains.partners.to_host();
-    const auto built = s.state.built.to_host();
-    const auto near = s.state.particles.near.to_host();
-    for (std::size_t i = 0; i < n; ++i) {
-        for (std::uint64_t e = offsets[i]; e < offsets[i + 1]; ++e)
-            r.mean_neighbors += i / s.state.block == partners[e] / s.state.block ? 2 : 1;
-        r.mean_margin_ratio += static_cast<double>(built[i].radius) / near[i].radius;
-    }
-    r.mean_neighbors /= static_cast<double>(n);
-    r.mean_margin_ratio /= static_cast<double>(n);
+    if (s.state.size() == 0 || s.rebuilds == 0) return r;
+    const ListFigures figures = s.stage.list_figures(s.state);
+    r.mean_neighbors = figures.mean_neighbors;
+    r.mean_margin_ratio = figures.mean_margin_ratio;
     return r;
 }
 

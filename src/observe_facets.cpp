@@ -125,6 +125,9 @@ void restore_facets(const Checkpoint& c, FacetList& list) {
         states.push_back({c.facet_history[k], c.facet_side[k]});
     }
     offsets.push_back(c.facet.size());
+    std::vector<std::uint32_t> row_of(c.id.size(), ~0u);
+    for (std::size_t k = 0; k < particles.size(); ++k) row_of[particles[k]] = static_cast<std::uint32_t>(k);
+    list.row_of.assign(row_of);
     list.particles.assign(particles);
     list.offsets.assign(offsets);
     list.facets.assign(c.facet);

@@ -6,7 +6,6 @@
 #include "contacts/laws.hpp"
 #include "exec/exec.hpp"
 #include "observe.hpp"
-#include "simulation_impl.hpp"
 
 namespace grainray {
 
@@ -65,9 +64,11 @@ PositionScale scale_for(const Scene& scene, const InitialState& s) {
 SearchOptions search_options(const Scene& scene, const SimulationOptions& options, const State& state, std::uint32_t block) {
     SearchOptions o;
     o.backend = options.backend != "auto" ? options.backend : scene.search.backend;
+    if (o.backend == "rays" && scene.search.rays.variant == "published") o.backend = "rays-published";
     o.kind = ListKind::blocked;
     o.block = block;
     o.ascending = false;
+    o.local_order = true;  // the sort stage sees to it
     for (int a = 0; a < 3; ++a) o.period[a] = static_cast<float>(static_cast<double>(state.period[a]) * state.particles.scale.unit);
     return o;
 }
@@ -106,7 +107,7 @@ void set_period(const Scene& scene, State& state) {
 
 Simulation::Impl::Impl(const Scene& s, const SimulationOptions& o, const PositionScale& scale, const InitialState& sizes, double largest_ever)
     : scene(s), options(o), threads(o.threads), state(o.device), search(o.device), stage(stages(o.device)),
-      law(contact_law(s.contact.law)), old_grains(o.device), old_walls(o.device), old_index(o.device),
+      law(contact_law(s.contact.law)), old_grains(o.device), old_walls(o.device), found(o.device), old_index(o.device),
       spheres(o.device) {
     const std::size_t n = sizes.size(), nm = scene.materials.size();
     state.particles.scale = scale;
@@ -128,6 +129,7 @@ Simulation::Impl::Impl(const Scene& s, const SimulationOptions& o, const Positio
     for (const auto* table : {&grains, &walls, &facets})
         for (const PairParameters& p : *table) stiffest = std::max({stiffest, double{p.kn}, double{p.kt}});
     state.grain_parameters.assign(grains);
+    if (nm) state.only_parameters = grains[0];
     state.wall_parameters.assign(walls);
     state.facets.parameters.assign(facets);
     build_facets(scene, scale, state.facets);
@@ -138,6 +140,7 @@ Simulation::Impl::Impl(const Scene& s, const SimulationOptions& o, const Positio
     largest_radius = sizes.radii.empty() && largest_ever == 0 ? 1 : largest_ever;
     for (const double r : sizes.radii) largest_radius = std::max(largest_radius, r);
     const double largest = largest_radius;
+    if (n) smallest_radius = *std::min_element(sizes.radii.begin(), sizes.radii.end());
     state.quanta = Quanta::for_scale(stiffest, largest);
     constants = {static_cast<float>(scene.dt), convert<float>(scene.gravity), static_cast<float>(scene.contact.mass_damping)};
     if (scene.search.skin > 0) margin_rule.least = static_cast<float>(scene.search.skin);
@@ -146,11 +149,11 @@ Simulation::Impl::Impl(const Scene& s, const SimulationOptions& o, const Positio
     margin_rule.most_units = static_cast<float>(largest / scale.unit);
     margin_rule.trigger = scene.search.trigger == Trigger::published ? 2.0f : 1.0f;
 
-    for (Array<std::uint64_t>* offsets : {&state.grains.offsets, &state.walls.offsets}) {
-        offsets->resize_discard(n + 1);
-        offsets->clear_bytes();
+    for (ContactList* list : {&old_grains, &old_walls}) {
+        list->offsets.resize_discard(n + 1);
+        list->offsets.clear_bytes();
     }
-    state.wrench.resize_discard(n);
+    if (!stage.fused) state.wrench.resize_discard(n);
     state.wrench.clear_bytes();
     for (const Plane& plane : scene.planes) planes_move = planes_move || plane.motion.moves();
     const auto critical = critical_steps(scene, sizes);
@@ -246,10 +249,10 @@ void Simulation::Impl::load(const Checkpoint& c) {
         for (auto& id : ids) id = place.at(id);
         return ids;
     };
-    OldLists(n, places(c.contact_a), places(c.contact_b), c.contact_history).store(state.grains);
-    OldLists(n, places(c.wall_particle), c.wall_plane, c.wall_history).store(state.walls);
+    OldLists(n, places(c.contact_a), places(c.contact_b), c.contact_history).store(old_grains);
+    OldLists(n, places(c.wall_particle), c.wall_plane, c.wall_history).store(old_walls);
     restore_facets(c, state.facets.list);
-    state.wrench.resize_discard(n);
+    if (!stage.fused) state.wrench.resize_discard(n);
     state.wrench.clear_bytes();
     step_number = c.step;
     prepare();

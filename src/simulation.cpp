@@ -1,11 +1,10 @@
 // A time step. Impl::step() is the table of contents of the whole program.
-#include "simulation_impl.hpp"
+#include "boundary/build.hpp"
+#include "observe.hpp"
 
 #include <algorithm>
 #include <chrono>
-
-#include "boundary/build.hpp"
-#include "observe.hpp"
+#include <cmath>
 
 namespace grainray {
 namespace {
@@ -25,11 +24,6 @@ private:
 }  // namespace
 
 void Simulation::Impl::step() {
-    if (state.age.outdated) {
-        tune_interval();
-        Timed timed(profile.neighbors);
-        update_lists();
-    }
     {
         Timed timed(profile.contacts);
         stage.contacts(state, law, constants);
@@ -37,58 +31,74 @@ void Simulation::Impl::step() {
     {
         Timed timed(profile.boundary);
         stage.walls(state, law, constants);
-        if (state.facets.count()) stage.facets(state, law, constants, 0);
+        if (state.facets.count()) stage.facets(state, law, constants, 0, FacetTarget::wrench);
     }
     {
         Timed timed(profile.dynamics);
         ++state.age.steps;
         stage.integrate(state, constants, margin_rule.trigger);
-        std::uint32_t flag[2];
-        detail::copy(Device::cpu, flag, options.device, state.flags.data(), sizeof flag);
-        state.age.outdated = flag[0] != ~0u || state.age.steps >= state.age.limit;
+        state.age.outdated = state.flags.data()[0] != ~0u || state.age.steps >= state.age.limit;
     }
     ++step_number;
-    ++steps_since_start;
     if (planes_move) place_planes();
-    if (meshes_move) place_facets(scene, state.particles.scale, step_number, 1, state.facets);
+    if (meshes_move) place_meshes();
+}
+
+std::uint32_t Simulation::Impl::fused_steps(std::uint64_t most) {
+    Timed timed(profile.fused);
+    // First as many as lists usually last, then a few at a time: steps launched past the end of a list cost a little.
+    const double expected = usual_life > state.age.steps ? usual_life - state.age.steps : std::max(2.0, usual_life / 8);
+    const auto steps = static_cast<std::uint32_t>(
+        std::min({most, std::uint64_t{state.age.limit - state.age.steps}, std::uint64_t{64}, static_cast<std::uint64_t>(std::ceil(expected))}));
+    if (planes_move) place_planes(steps);
+    if (meshes_move) place_meshes(steps);
+    const std::uint32_t done = stage.fused(state, law, constants, margin_rule.trigger, steps);
+    step_number += done;
+    if (planes_move) place_planes();
+    if (meshes_move) place_meshes();
+    return done;
+}
+
+void Simulation::Impl::run(std::uint64_t steps) {
+    for (std::uint64_t end = step_number + steps; step_number < end;) {
+        if (state.age.outdated) update_lists();
+        if (stage.fused) fused_steps(end - step_number);
+        else step();
+    }
+    steps_since_start += steps;
 }
 
 void Simulation::Impl::tune_interval() {
     tuner.finished(state.age.steps, state.grains.partners.size(), profile.neighbors - list_start.neighbors,
-                   profile.contacts - list_start.contacts);
+                   profile.contacts + profile.fused - list_start.contacts - list_start.fused);
     margin_rule.interval = static_cast<float>(tuner.interval());
+    usual_life += 0.3 * (state.age.steps - usual_life);
     list_start = profile;
 }
 
 void Simulation::Impl::prepare() {
     place_planes();
-    place_facets(scene, state.particles.scale, step_number, 1, state.facets);
-    if (state.size()) threads.run([&] { update_lists(); });
+    place_meshes();
+    if (state.size()) threads.run([&] { make_lists(); });
+}
+
+void Simulation::Impl::update_lists() {
+    tune_interval();
+    Timed timed(profile.neighbors);
+    stage.retire(state, old_grains);
+    std::swap(state.walls, old_walls);
+    make_lists();
 }
 
 /// Sort, margins, search, then the histories of the old lists into the new ones.
-void Simulation::Impl::update_lists() {
-    stage.sort(state, old_index);
+void Simulation::Impl::make_lists() {
+    stage.sort(state, old_grains, old_index);
     stage.margins(state, constants, margin_rule, spheres);
-
     const float* s = spheres.data();
-    std::swap(state.grains, old_grains);
-    NeighborList found(options.device);  // borrows the memory of the list before last
-    found.offsets.swap(state.grains.offsets);
-    found.neighbors.swap(state.grains.partners);
     search.find(Points{s, s + 1, s + 2, 4, s + 3, 4, 0, state.particles.id.data(), state.size()}, found);
-    found.offsets.swap(state.grains.offsets);
-    found.neighbors.swap(state.grains.partners);
-    state.grains.history.resize_discard_slack(state.grains.partners.size());
-    stage.carry_pairs(old_grains, old_index, state.grains);
-
-    std::swap(state.walls, old_walls);
-    stage.wall_candidates(state, constants, state.walls);
-    stage.carry_walls(old_walls, old_index, state.walls);
-    if (state.facets.count()) {
-        stage.facet_candidates(state, constants);
-        stage.carry_facets(state, old_index);
-    }
+    stage.list_pairs(state, found, old_grains, old_index);
+    stage.list_walls(state, constants, old_walls, old_index);
+    if (state.facets.count()) stage.list_facets(state, constants, old_index);
 
     detail::copy(options.device, state.flags.data(), Device::cpu, std::array{~0u, ~0u}.data(), 2 * sizeof(std::uint32_t));
     state.age.steps = 0;
@@ -96,20 +106,23 @@ void Simulation::Impl::update_lists() {
     ++rebuilds;
 }
 
-void Simulation::Impl::place_planes() {
+void Simulation::Impl::place_planes(std::uint32_t steps) {
     std::vector<PlaneNow> now;
-    now.reserve(scene.planes.size());
+    now.reserve(scene.planes.size() * steps);
     const Vec3d origin = state.particles.scale.origin;
-    for (const Plane& plane : scene.planes) {
-        const PlaneState p = plane_at(plane, time());
-        const Motion& m = plane.motion;
-        const double swing = length(m.oscillation_amplitude) * 6.2831853071795865 * m.oscillation_frequency;
-        now.push_back({p.point - origin, p.normal, p.centre - origin, convert<float>(p.velocity), convert<float>(p.angular_velocity),
-                       length(m.velocity) + std::fabs(swing), std::fabs(m.rotation_rate)});
-    }
-    if (state.planes.size() != now.size()) state.planes.resize_discard(now.size());
-    if (!now.empty()) detail::copy(options.device, state.planes.data(), Device::cpu, now.data(), now.size() * sizeof(PlaneNow));
+    for (std::uint64_t step = step_number; step < step_number + steps; ++step)
+        for (const Plane& plane : scene.planes) {
+            const PlaneState p = plane_at(plane, time_of(step));
+            const Motion& m = plane.motion;
+            const double swing = length(m.oscillation_amplitude) * 6.2831853071795865 * m.oscillation_frequency;
+            now.push_back({p.point - origin, p.normal, p.centre - origin, convert<float>(p.velocity), convert<float>(p.angular_velocity),
+                           length(m.velocity) + std::fabs(swing), std::fabs(m.rotation_rate)});
+        }
+    state.plane_count = static_cast<std::uint32_t>(scene.planes.size());
+    state.planes.assign(now);
 }
+
+void Simulation::Impl::place_meshes(std::uint32_t steps) { place_facets(scene, state.particles.scale, step_number, steps, state.facets); }
 
 void Simulation::step() { run(1); }
 
@@ -117,10 +130,8 @@ void Simulation::run(std::uint64_t steps) {
     Impl& s = *impl_;
     while (steps > 0) {
         const std::uint64_t every = s.lost_every, batch = every ? std::min(steps, every - s.step_number % every) : steps;
-        if (s.state.size() == 0) s.step_number += batch;
-        else s.threads.run([&] {
-            for (std::uint64_t k = 0; k < batch; ++k) s.step();
-        });
+        if (s.state.size()) s.threads.run([&] { s.run(batch); });
+        else s.step_number += batch;
         steps -= batch;
         if (every && s.step_number % every == 0) take_out_lost();
     }

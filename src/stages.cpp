@@ -1,11 +1,14 @@
-// The table of one executor's stages.
+// The tables of stages.
 #include "stages.hpp"
 
-#include "exec/exec.hpp"
+namespace grainray {
 
-namespace grainray::GRAINRAY_EXEC {
+const Stages cpu::stage_table{retire, sort, margins, list_pairs, list_walls, contacts, walls, integrate, nullptr, touching, list_figures, totals, quantile_x, hash, healthy, contact_fields,
+                               list_facets, facets, surface_totals, hash_facets, facet_fields, count_lost};
 
-const Stages stage_table{sort, margins, wall_candidates, carry_pairs, carry_walls, contacts, walls, integrate,
-                         facet_candidates, carry_facets, facets, count_lost};
+#ifdef GRAINRAY_HAS_CUDA
+const Stages cuda::stage_table{retire, sort, margins, list_pairs, list_walls, nullptr, nullptr, nullptr, fused, touching, list_figures, totals, quantile_x, hash, healthy, contact_fields,
+                               list_facets, facets, surface_totals, hash_facets, facet_fields, count_lost};
+#endif
 
-}  // namespace grainray::GRAINRAY_EXEC
+}  // namespace grainray

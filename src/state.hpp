@@ -7,13 +7,16 @@
 
 namespace grainray {
 
-/// Rows of candidates with the tangential history of each: particle-particle or particle-plane.
+/// Rows of candidates with the tangential history of each: particle-particle or particle-plane. One row after the other,
+/// except the particle pairs of CUDA, which stand in slices (src/exec/rows_cuda.hpp); only those have `counts`.
 struct ContactList {
-    explicit ContactList(Device device) : offsets(device), partners(device), history(device) {}
+    explicit ContactList(Device device) : offsets(device), counts(device), partners(device), history(device), touched(device) {}
     Array<std::uint64_t> offsets;
+    Array<std::uint32_t> counts;
     Array<std::uint32_t> partners;
     Array<Vec3f> history;
-    std::size_t bytes() const { return offsets.bytes() + partners.bytes() + history.bytes(); }
+    Array<std::uint8_t> touched;  ///< 1 where a history may be other than zero; the CPU's pair loop alone
+    std::size_t bytes() const { return offsets.bytes() + counts.bytes() + partners.bytes() + history.bytes() + touched.bytes(); }
 };
 
 /// A plane at one instant, relative to the world's origin. Distances are taken in double: a plane reaches far.
@@ -33,20 +36,26 @@ struct ListAge {
 
 struct State {
     explicit State(Device device)
-        : particles(device), wrench(device), built(device), frame(device), grains(device), walls(device), grain_parameters(device),
-          wall_parameters(device), planes(device), facets(device), flags(device, 2) {}
+        : particles(device), wrench(device), next_near(device), next_far(device), next_body(device), built(device), frame(device),
+          grains(device), walls(device), grain_parameters(device), wall_parameters(device), planes(device), facets(device),
+          flags(device, 2) {}
 
     Particles particles;
-    Array<Wrench> wrench;   ///< sums of the step under way; the integrator leaves zeros
+    Array<Wrench> wrench;   ///< sums of the step under way; the integrator leaves zeros. Not used by the fused step
+    Array<Near> next_near;  ///< fused step: what a step writes while others still read `particles`
+    Array<Far> next_far;    ///< the same, where an axis is periodic
+    Array<Body> next_body;
     Array<Near> built;      ///< position at the last build; `radius` holds the margin, units
     Array<Vec3f> frame;     ///< velocity of the surroundings at the last build, units a step: motion shared is no displacement
     Vec3f lower, upper;     ///< bounds of the centres at the last sort, m from the origin
     ContactList grains, walls;
     Array<PairParameters> grain_parameters;  ///< materials x materials
+    PairParameters only_parameters{};        ///< the first of them
     Array<PairParameters> wall_parameters;   ///< materials x planes
-    Array<PlaneNow> planes;
-    Facets facets;               ///< meshes and terrain
-    Array<std::uint32_t> flags;  ///< [0] a particle past its margin, [1] a particle whose step is not finite; ~0: none
+    Array<PlaneNow> planes; ///< where they are now; of a batch of fused steps with moving planes, one set a step
+    std::uint32_t plane_count = 0;
+    Facets facets;          ///< meshes and terrain
+    Array<std::uint32_t> flags;  ///< [0] a particle past its margin (fused: the step that saw one), [1] one whose step is not finite; ~0: none
     std::uint32_t materials = 0;
     std::uint32_t block = 1;     ///< of ListKind::blocked
     Quanta quanta;
@@ -72,34 +81,10 @@ struct MarginRule {
     float trigger = 1;        ///< displacement / margin that outdates the list: 1 safe, 2 published
 };
 
-/// The stages, one table an executor; simulation.cpp calls them in the order of its step().
-struct Stages {
-    /// Morton order, periodic wrap; returns the old index of every new one.
-    void (*sort)(State&, Array<std::uint32_t>& old_index);
-    /// Frames, margins, positions of this build, ListAge::limit; `spheres` gets 4 floats a particle: x y z reach.
-    void (*margins)(State&, const StepConstants&, const MarginRule&, Array<float>& spheres);
-    /// Planes within reach of each particle until the list's limit.
-    void (*wall_candidates)(State&, const StepConstants&, ContactList& walls);
-    /// Histories of the old list into the new one; sign -1 where the pair stood in the other row.
-    void (*carry_pairs)(const ContactList& old_list, const Array<std::uint32_t>& old_index, ContactList& list);
-    void (*carry_walls)(const ContactList& old_list, const Array<std::uint32_t>& old_index, ContactList& list);
-
-    void (*contacts)(State&, ContactLaw, const StepConstants&);
-    void (*walls)(State&, ContactLaw, const StepConstants&);
-    /// Moves every particle; sets State::flags.
-    void (*integrate)(State&, const StepConstants&, float trigger);
-
-    /// Meshes and terrain: rows of facets within reach until the list's limit; histories of the old rows into the new.
-    void (*facet_candidates)(State&, const StepConstants&);
-    void (*carry_facets)(State&, const Array<std::uint32_t>& old_index);
-    /// Adds to State::wrench of the particles that have a row. step: row of Facets::now.
-    void (*facets)(State&, ContactLaw, const StepConstants&, std::uint32_t step);
-    /// Particles that left an open terrain.
-    std::size_t (*count_lost)(const State&, const LostRegion&);
+/// Means over the particles.
+struct ListFigures {
+    double mean_neighbors = 0;     ///< both sides of a pair counted
+    double mean_margin_ratio = 0;  ///< margin / radius
 };
-const Stages& stages(Device);
-
-namespace cpu { extern const Stages stage_table; }
-namespace cuda { extern const Stages stage_table; }
 
 }  // namespace grainray

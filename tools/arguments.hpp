@@ -8,8 +8,6 @@
 #include <string_view>
 #include <vector>
 
-#include <CLI/CLI.hpp>
-
 #include "grainray/core.hpp"
 
 namespace grainray::cli {
@@ -34,15 +32,6 @@ void require_steps(const std::string& option, std::int64_t steps, std::int64_t l
 void require_finite(const std::string& option, const std::optional<double>& value);
 /// Throws InputError where a file at `path` could not be written; leaves nothing behind. Empty: none is wanted.
 void require_writable(const std::string& option, const std::filesystem::path&);
-/// For names of files: "" is a mistake, such as a variable of the shell that is not set.
-CLI::Validator not_empty();
-
-/// --set key=value, any number of times; each takes one argument, so a scene may follow.
-void add_overrides(CLI::App&, std::vector<std::string>&);
-
-/// One sentence for what CLI11 found wrong; unknown commands and options come with the nearest name.
-std::string parse_mistake(const CLI::App&, const CLI::ParseError&);
-
 /// "1 particle", "2 particles"
 std::string counted(std::uint64_t count, std::string_view what);
 /// "1234567.8" -> "1.23 M" and the like, for people.

@@ -1,139 +1,164 @@
-// grainray bench neighbors: the search alone, on clouds of points with about ten neighbours each.
+// grainray bench neighbors: the search alone, by back ends, on clouds of points with about ten neighbours each.
 #include <algorithm>
-#include <chrono>
-#include <cmath>
 #include <cstdio>
-#include <random>
+#include <set>
 
+#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "commands.hpp"
-#include "grainray/neighbors.hpp"
+#include "bench_contest.hpp"
+#include "command.hpp"
 #include "grainray/output.hpp"
 #include "setup.hpp"
 
 namespace grainray::cli {
 namespace {
 
-constexpr std::size_t brute_limit = 50'000;  // all pairs of more points take too long to be in a default table
-constexpr int least_repeats = 3, most_repeats = 20;
-constexpr double enough_seconds = 1;
+constexpr std::size_t brute_limit = 20'000;  // all pairs of more points take too long to be among "all"
 
 struct Options {
     std::vector<std::int64_t> points{20'000, 200'000};
-    std::string backend = "auto", kind = "half", device = "auto";
+    std::vector<std::string> clouds{"random", "lognormal"}, backends{"auto"};
+    std::vector<double> ratios{8};
+    std::string kind = "half", order = "morton", device = "auto", machine;
+    double seconds = 0.5, longest = 20;
     int threads = 0;
     std::filesystem::path json;
+    Peers peers = nullptr;
 };
 
-struct Cloud {
+void require_options(const Options& options) {
+    require_choice("--kind", options.kind, {"half", "full"});
+    if (options.peers && options.kind != "full") throw InputError("--kind: the peers fill full lists only");
+    require_choice("--order", options.order, {"morton", "random"});
+    for (const std::int64_t n : options.points) require_at_least("--points", n, 1);
+    for (const double r : options.ratios)
+        if (!(r >= 1 && r <= 1000)) throw InputError(fmt::format("--ratio: {} is not a ratio of sizes; give 1 to 1000", r));
+    if (!(options.seconds > 0)) throw InputError("--seconds must be above 0");
+    if (!(options.longest > 0)) throw InputError("--longest must be above 0");
+    std::vector<std::string> known = cloud_names();
+    known.push_back("all");
+    for (const std::string& cloud : options.clouds) require_choice("--cloud", cloud, known);
+    require_at_least("--threads", options.threads, 0);
+    require_writable("--json", options.json);
+}
+
+bool is_all(const std::vector<std::string>& names) { return std::find(names.begin(), names.end(), "all") != names.end(); }
+
+struct CloudName {
     std::string name;
-    float reach;
-    std::vector<float> xyz;
+    double ratio;
 };
-
-/// One point a unit of volume; the sphere of radius 2 reach holds ten of them.
-Cloud random_cloud(std::size_t n) {
-    std::mt19937 random(1);
-    std::uniform_real_distribution<float> place(0, std::cbrt(static_cast<float>(n)));
-    Cloud cloud{"random", 0.5f * std::cbrt(10 / (4.0f / 3.0f * 3.14159265f)), std::vector<float>(3 * n)};
-    for (float& x : cloud.xyz) x = place(random);
-    return cloud;
-}
-
-/// A cubic lattice of unit spacing, each point moved a little; its order is that of the lattice.
-Cloud lattice_cloud(std::size_t n) {
-    std::mt19937 random(1);
-    std::uniform_real_distribution<float> shift(0, 0.3f);
-    const auto side = static_cast<std::size_t>(std::ceil(std::cbrt(static_cast<double>(n))));
-    Cloud cloud{"lattice", 0.7f, {}};
-    for (std::size_t i = 0; i < n; ++i)
-        for (const std::size_t k : {i % side, i / side % side, i / side / side}) cloud.xyz.push_back(static_cast<float>(k) + shift(random));
-    return cloud;
-}
-
-struct Measured {
-    double milliseconds;  ///< median of build and search together
-    std::uint64_t entries;
-    std::size_t memory_bytes;
-    int repeats;
-};
-
-Measured measure(NeighborSearch& search, const Points& points, Device device) {
-    NeighborList list(device);
-    search.find(points, list);  // grows the buffers
-    std::vector<double> times;
-    double total = 0;
-    while (times.size() < least_repeats || (times.size() < most_repeats && total < enough_seconds)) {
-        const auto start = std::chrono::steady_clock::now();
-        search.find(points, list);
-        std::uint32_t last = 0;  // reading a result waits for the device
-        if (list.neighbors.size()) detail::copy(Device::cpu, &last, device, list.neighbors.data() + list.neighbors.size() - 1, sizeof last);
-        times.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
-        total += times.back();
+/// Clouds of several sizes stand once for each ratio.
+std::vector<CloudName> clouds_of(const Options& options) {
+    std::vector<CloudName> all;
+    for (const std::string& name : is_all(options.clouds) ? cloud_names() : options.clouds) {
+        if (!has_sizes(name)) all.push_back({name, 1});
+        else
+            for (const double ratio : options.ratios) all.push_back({name, ratio});
     }
-    std::sort(times.begin(), times.end());
-    return {1e3 * times[times.size() / 2], list.neighbors.size(), search.memory_bytes() + list.offsets.bytes() + list.neighbors.bytes(),
-            static_cast<int>(times.size())};
+    return all;
 }
 
-nlohmann::ordered_json bench_one(const Cloud& cloud, const std::string& backend, const Options& options, Device device) {
-    SearchOptions search_options;
-    search_options.backend = backend;
-    search_options.kind = options.kind == "half" ? ListKind::half : ListKind::full;
-    search_options.ascending = false;
-    NeighborSearch search(device, search_options);
-    const std::size_t n = cloud.xyz.size() / 3;
-    const Array<float> xyz(device, cloud.xyz);
-    const Measured m = measure(search, Points::xyz(xyz.data(), n, cloud.reach), device);
-    const double both_sides = static_cast<double>(m.entries) * (options.kind == "half" ? 2 : 1);
-    fmt::print("{:<8} {:>10} {:<7} {:>10.3f} {:>12.2f} {:>14} {:>11.1f}\n", cloud.name, n, search.backend(), m.milliseconds,
-               both_sides / static_cast<double>(n), short_number(1e3 * static_cast<double>(m.entries) / m.milliseconds),
-               static_cast<double>(m.memory_bytes) / static_cast<double>(n));
-    return {{"cloud", cloud.name}, {"points", n}, {"backend", search.backend()}, {"milliseconds", m.milliseconds}, {"repeats", m.repeats},
-            {"mean_neighbors", both_sides / static_cast<double>(n)}, {"list_entries", m.entries},
-            {"neighbors_per_second", 1e3 * static_cast<double>(m.entries) / m.milliseconds}, {"memory_bytes", m.memory_bytes}};
+std::vector<std::string> backends_of(const Options& options, Device device, std::size_t points) {
+    if (!is_all(options.backends)) return options.backends;
+    std::vector<std::string> all;
+    for (const BackendInfo& info : search_backends(device))
+        if (info.available && (info.name != "brute" || points <= brute_limit)) all.push_back(info.name);
+    return all;
+}
+
+/// Throws SimulationError where two back ends found different numbers of pairs.
+void require_equal(const Cloud& cloud, const std::vector<Figures>& all) {
+    const Figures* first = nullptr;
+    for (const Figures& f : all) {
+        if (!f.failure.empty()) continue;
+        if (first && f.entries != first->entries)
+            throw SimulationError(fmt::format("cloud {} of {}: {} found {} entries and {} found {}; please report this", cloud.name,
+                                              counted(cloud.size(), "point"), first->name, first->entries, f.name, f.entries));
+        if (!first) first = &f;
+    }
+}
+
+/// Who took too long on a cloud: "rays-published on two-size".
+using TooSlow = std::set<std::string>;
+
+void bench_cloud(const CloudName& which, std::size_t points, const Options& options, Device device, TooSlow& too_slow, nlohmann::ordered_json& results) {
+    const Cloud cloud = make_cloud(which.name, which.ratio, points, options.order);
+    const Array<float> xyz(device, cloud.xyz), moved(device, moved_xyz(cloud)), reach(device, cloud.reach);
+    std::vector<Contender> contenders;
+    for (const std::string& backend : backends_of(options, device, points)) {
+        SearchOptions search;
+        search.backend = backend;
+        search.kind = options.kind == "half" ? ListKind::half : ListKind::full;
+        search.ascending = false;
+        contenders.push_back(contender(device, search, points_of(xyz, reach), points_of(moved, reach)));
+    }
+    const std::size_t ours = contenders.size();
+    if (options.peers)
+        for (Contender& peer : options.peers(device, cloud)) contenders.push_back(std::move(peer));
+    for (Contender& c : contenders)
+        if (too_slow.contains(c.name + " on " + cloud.name))
+            c.search = [&options]() -> std::uint64_t { throw SimulationError(fmt::format("left out: took longer than {:g} s before", options.longest)); };
+    std::vector<Figures> all = take_turns(contenders, options.seconds);
+    for (std::size_t c = 0; c < all.size(); ++c) {
+        results.push_back(row_json(cloud, options.kind == "full", all[c]));
+        // Peers round in their own way, so pairs on the very reach may differ.
+        if (c >= ours && all[c].failure.empty() && all[0].failure.empty()) results.back()["entries_differ"] = static_cast<std::int64_t>(all[c].entries - all[0].entries);
+        if (all[c].least > 1e3 * options.longest) too_slow.insert(all[c].name + " on " + cloud.name);
+        print_row(results.back());
+    }
+    std::fflush(stdout);
+    all.resize(ours);
+    require_equal(cloud, all);
 }
 
 int bench_neighbors(const Options& options) {
-    require_choice("--kind", options.kind, {"half", "full"});
-    for (const std::int64_t n : options.points) require_at_least("--points", n, 1);
-    require_at_least("--threads", options.threads, 0);
-    require_writable("--json", options.json);
+    require_options(options);
     const Device device = choose_search_device(options.device);
-    if (options.backend != "all") require_backend("--backend", options.backend, device);
+    if (!is_all(options.backends))
+        for (const std::string& backend : options.backends) require_backend("--backend", backend, device);
     const ThreadLimit limit(options.threads);
-    nlohmann::ordered_json json{{"version", GRAINRAY_VERSION}, {"benchmark", "neighbors"}, {"device", std::string(name(device))},
-                                {"threads", ThreadLimit::count()}, {"kind", options.kind}, {"results", nlohmann::ordered_json::array()}};
-    fmt::print("build and search, {} lists, on {} with {} threads\n", options.kind, name(device), ThreadLimit::count());
-    fmt::print("{:<8} {:>10} {:<7} {:>10} {:>12} {:>14} {:>11}\n", "cloud", "points", "search", "ms", "neighbours", "entries/s", "bytes/point");
+    nlohmann::ordered_json json{{"version", GRAINRAY_VERSION}, {"benchmark", "neighbors"}, {"machine", machine_json(device, options.machine, ThreadLimit::count())},
+                                {"kind", options.kind}, {"results", nlohmann::ordered_json::array()}};
+    fmt::print("{}, {} threads, {} lists, points in {} order\n", json["machine"]["name"].get<std::string>(), ThreadLimit::count(), options.kind, options.order);
+    print_heading();
+    TooSlow too_slow;
     for (const std::int64_t n : options.points)
-        for (const Cloud& cloud : {random_cloud(static_cast<std::size_t>(n)), lattice_cloud(static_cast<std::size_t>(n))}) {
-            std::vector<std::string> backends{options.backend};
-            if (options.backend == "all") {
-                backends.clear();
-                for (const BackendInfo& info : search_backends(device))
-                    if (info.available && (info.name != "brute" || static_cast<std::size_t>(n) <= brute_limit)) backends.push_back(info.name);
-            }
-            for (const std::string& backend : backends) json["results"].push_back(bench_one(cloud, backend, options, device));
+        for (const CloudName& which : clouds_of(options)) {
+            bench_cloud(which, static_cast<std::size_t>(n), options, device, too_slow, json["results"]);
+            // After each cloud, so that a run that is stopped leaves what it has measured.
+            if (!options.json.empty()) write_text_atomically(options.json, json.dump(2) + '\n');
         }
-    if (!options.json.empty()) write_text_atomically(options.json, json.dump(2) + '\n');
     return done;
 }
 
 }  // namespace
 
-void add_bench_neighbors(CLI::App& bench, Action& chosen) {
-    CLI::App* command = bench.add_subcommand("neighbors", "Time of the neighbour search on random and lattice clouds");
+void add_bench_neighbors(CLI::App& bench, Action& chosen) { add_bench_neighbors(bench, chosen, nullptr); }
+
+void add_bench_neighbors(CLI::App& bench, Action& chosen, Peers peers) {
+    CLI::App* command = bench.add_subcommand("neighbors", "Time of the neighbour search by back ends, on clouds of points");
     const auto options = std::make_shared<Options>();
-    command->add_option("--points", options->points, "Numbers of points, with commas between")->delimiter(',')->allow_extra_args(false)->type_name("N,...");
-    command->add_option("--backend", options->backend, "auto, brute, cells, or all (brute force up to 50,000 points)")->capture_default_str();
+    options->peers = peers;
+    if (peers) options->kind = "full";
+    const auto list = [&](const char* name, auto& values, const char* text, const char* type) {
+        command->add_option(name, values, text)->delimiter(',')->allow_extra_args(false)->type_name(type);
+    };
+    list("--points", options->points, "Numbers of points, with commas between; default 20000,200000", "N,...");
+    list("--cloud", options->clouds, "random, lattice, lognormal, two-size, sparse, clustered, or all; default random,lognormal", "NAME,...");
+    list("--ratio", options->ratios, "Largest reach by smallest, of lognormal and two-size; default 8", "R,...");
+    list("--backend", options->backends, "Back ends as `grainray info` names them, auto, or all (brute force up to 20,000 points)", "NAME,...");
     command->add_option("--kind", options->kind, "half: each pair once; full: in both rows")->capture_default_str();
+    command->add_option("--order", options->order, "Of the points in memory: morton, as a simulation keeps them, or random")->capture_default_str();
     command->add_option("--device", options->device, "auto, cpu or cuda")->capture_default_str();
     command->add_option("--threads", options->threads, "CPU threads; 0: all")->capture_default_str();
+    command->add_option("--seconds", options->seconds, "Time for each row, about; at least three repeats, at most 20")->capture_default_str();
+    command->add_option("--longest", options->longest, "A back end that takes more seconds on a cloud is left out of that cloud from then on")->capture_default_str();
+    command->add_option("--machine", options->machine, "Name of this machine in the file; default: its GPU or processor")->type_name("NAME");
     command->add_option("--json", options->json, "Write the figures to this file")->type_name("FILE")->check(not_empty());
-    command->footer("Example: grainray bench neighbors --points 1000,100000 --backend all --json neighbors.json");
+    command->footer("Example: grainray bench neighbors --cloud two-size --ratio 1,2,4,8,16,32 --backend all --json neighbors.json");
     command->callback([options, &chosen] { chosen = [options] { return bench_neighbors(*options); }; });
 }
 

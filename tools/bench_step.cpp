@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "column_scene.hpp"
-#include "commands.hpp"
+#include "command.hpp"
 #include "grainray/output.hpp"
 #include "preflight.hpp"
 #include "report.hpp"
@@ -117,17 +117,17 @@ int bench_step(const Options& options) {
 }  // namespace
 
 void add_bench_step(CLI::App& bench, Action& chosen) {
-    CLI::App* command = bench.add_subcommand("step", "Time of a step, stage by stage");
+    Command command(bench, chosen, "step", "Time of a step, stage by stage");
     const auto options = std::make_shared<Options>();
-    command->add_option("--scene", options->scene, "collapse (20,160 grains, 4000 steps), settled (needs --init, 2000 steps after 200), or a scene file")
-        ->type_name("NAME|FILE.toml")->capture_default_str();
-    command->add_option("--init", options->init, "Start from these particles: columns x y z radius [vx vy vz]")->type_name("FILE.csv");
-    command->add_option("--steps", options->steps, "Steps that are timed")->type_name("N");
-    command->add_option("--warmup", options->warmup, "Steps before")->type_name("N");
-    command->add_option("--json", options->json, "Write the figures to this file")->type_name("FILE")->check(not_empty());
-    add_engine_options(*command, options->engine);
-    command->footer("Example: grainray bench step --scene collapse --steps 500 --threads 1 --json step.json");
-    command->callback([options, &chosen] { chosen = [options] { return bench_step(*options); }; });
+    command.option_with_default("--scene", options->scene, "NAME|FILE.toml",
+                                "collapse (20,160 grains, 4000 steps), settled (needs --init, 2000 steps after 200), or a scene file");
+    command.option("--init", options->init, "FILE.csv", "Start from these particles: columns x y z radius [vx vy vz]");
+    command.option("--steps", options->steps, "N", "Steps that are timed");
+    command.option("--warmup", options->warmup, "N", "Steps before");
+    command.option("--json", options->json, "FILE", "Write the figures to this file");
+    command.engine_options(options->engine);
+    command.footer("Example: grainray bench step --scene collapse --steps 500 --threads 1 --json step.json");
+    command.action([options] { return bench_step(*options); });
 }
 
 }  // namespace grainray::cli

@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 
 #include "arguments.hpp"
-#include "commands.hpp"
+#include "command.hpp"
 #include "preflight.hpp"
 #include "setup.hpp"
 
@@ -144,13 +144,13 @@ int check(const Options& options) {
 }  // namespace
 
 void add_check(CLI::App& app, Action& chosen) {
-    CLI::App* command = app.add_subcommand("check", "Validate a scene, forecast memory, time and stability; writes nothing");
+    Command command(app, chosen, "check", "Validate a scene, forecast memory, time and stability; writes nothing");
     const auto options = std::make_shared<Options>();
-    command->add_option("SCENE", options->scene, "Scene file")->required()->type_name("");
-    add_engine_options(*command, options->engine);
-    command->footer("Example: grainray check examples/column_collapse_literal.toml --set simulation.dt=1e-3\n"
+    command.argument("SCENE", options->scene, "Scene file");
+    command.engine_options(options->engine);
+    command.footer("Example: grainray check examples/column_collapse_literal.toml --set simulation.dt=1e-3\n"
                     "Exit status 0: it can run, perhaps with warnings; 2: it is refused, and the message names the field to change.");
-    command->callback([options, &chosen] { chosen = [options] { return check(*options); }; });
+    command.action([options] { return check(*options); });
 }
 
 }  // namespace grainray::cli

@@ -6,10 +6,10 @@
 #include <new>
 #include <system_error>
 
+#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
-#include "arguments.hpp"
-#include "commands.hpp"
+#include "command.hpp"
 #include "grainray/core.hpp"
 
 namespace grainray::cli {
@@ -27,12 +27,12 @@ void add_validate(CLI::App& app, Action& chosen) {
         std::vector<std::string> only;
         bool quick = false;
     };
-    CLI::App* command = app.add_subcommand("validate", "Run analytic and published cases: expected, got, tolerance, pass");
+    Command command(app, chosen, "validate", "Run analytic and published cases: expected, got, tolerance, pass");
     const auto options = std::make_shared<Options>();
-    command->add_option("CASE", options->only, "Only these cases; none: all");
-    command->add_flag("--quick", options->quick, "Leave out the cases that take long");
-    command->footer("Example: grainray validate --quick");
-    command->callback([options, &chosen] { chosen = [options] { return run_validate(options->only, options->quick); }; });
+    command.arguments("CASE", options->only, "Only these cases; none: all");
+    command.flag("--quick", options->quick, "Leave out the cases that take long");
+    command.footer("Example: grainray validate --quick");
+    command.action([options] { return run_validate(options->only, options->quick); });
 }
 
 void add_commands(CLI::App& app, Action& chosen) {

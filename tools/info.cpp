@@ -1,12 +1,10 @@
 // grainray info: what this build and this machine can do.
 #include <cstdio>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 #include <tbb/version.h>
 
-#include "commands.hpp"
+#include "command.hpp"
 #include "grainray/neighbors.hpp"
 #include "grainray/scene.hpp"
 #include "setup.hpp"
@@ -27,14 +25,31 @@ std::string vector_level() {
 
 void print_backends(Device device) {
     for (const BackendInfo& info : search_backends(device))
-        fmt::print("  search {:<9} {}{}\n", info.name, info.available ? "" : "not available: ", info.reason);
-    fmt::print("  search {:<9} not available: search by ray tracing is not built yet\n", "rays");
+        if (info.name != "rays-published")
+            fmt::print("  search {:<9} {}{}\n", info.name, info.available ? "" : "not available: ", info.reason);
 }
 
 void print_libraries() {
-    fmt::print("libraries    oneTBB {}.{}, fmt {}.{}.{}, CLI11 {}, nlohmann_json {}.{}.{}, {}\n", TBB_VERSION_MAJOR, TBB_VERSION_MINOR,
-               FMT_VERSION / 10000, FMT_VERSION / 100 % 100, FMT_VERSION % 100, CLI11_VERSION, NLOHMANN_JSON_VERSION_MAJOR,
-               NLOHMANN_JSON_VERSION_MINOR, NLOHMANN_JSON_VERSION_PATCH, GRAINRAY_LIBRARIES);
+    fmt::print("libraries    oneTBB {}.{}, fmt {}.{}.{}, {}\n", TBB_VERSION_MAJOR, TBB_VERSION_MINOR, FMT_VERSION / 10000, FMT_VERSION / 100 % 100,
+               FMT_VERSION % 100, GRAINRAY_LIBRARIES);
+}
+
+std::string cuda_version(int version) { return fmt::format("CUDA {}.{}", version / 1000, version % 1000 / 10); }
+
+void print_gpus() {
+    const CudaReport report = cuda_report();
+    if (report.gpus.empty()) {
+        fmt::print("device cuda  {}\n", cuda_status());
+        return;
+    }
+    fmt::print("device cuda  {}, built with {}, driver {} serves {}\n", counted(report.gpus.size(), "GPU"), cuda_version(report.runtime_version),
+               report.driver_version.empty() ? "of unknown version" : report.driver_version, cuda_version(report.driver_supports));
+    for (std::size_t i = 0; i < report.gpus.size(); ++i) {
+        const Gpu& gpu = report.gpus[i];
+        const std::string state = gpu.problem.empty() ? bytes_text(static_cast<double>(gpu.free_bytes)) + " free" : "cannot be used: " + gpu.problem;
+        fmt::print("  gpu {:<12} {}, compute capability {}.{}, {}, {}\n", i, gpu.name, gpu.major, gpu.minor, bytes_text(static_cast<double>(gpu.total_bytes)), state);
+    }
+    if (report.gpus.size() > 1) fmt::print("  gpu 0 is the one that runs; CUDA_VISIBLE_DEVICES chooses another\n");
 }
 
 int info(bool schema) {
@@ -45,10 +60,9 @@ int info(bool schema) {
     fmt::print("grainray     {}\n", GRAINRAY_VERSION);
     fmt::print("device cpu   {} threads, {}, {}\n", ThreadLimit::count(), vector_level(), bytes_text(machine_memory_bytes()));
     print_backends(Device::cpu);
-    fmt::print("device cuda  {}\n", cuda_status());
+    print_gpus();
     print_backends(Device::cuda);
     fmt::print("runs         on {}\n", cuda_available() ? "cuda (--device cpu for the CPU)" : "cpu");
-    fmt::print("RT cores     not used: this build has no ray tracing search yet\n");
     print_libraries();
     return done;
 }
@@ -56,11 +70,11 @@ int info(bool schema) {
 }  // namespace
 
 void add_info(CLI::App& app, Action& chosen) {
-    CLI::App* command = app.add_subcommand("info", "Devices, search back ends and why others are not there");
+    Command command(app, chosen, "info", "Devices, search back ends and why others are not there");
     const auto schema = std::make_shared<bool>(false);
-    command->add_flag("--schema", *schema, "Print every key of a scene file: type, unit, default, meaning");
-    command->footer("Example: grainray info --schema | less");
-    command->callback([schema, &chosen] { chosen = [schema] { return info(*schema); }; });
+    command.flag("--schema", *schema, "Print every key of a scene file: type, unit, default, meaning");
+    command.footer("Example: grainray info --schema | less");
+    command.action([schema] { return info(*schema); });
 }
 
 }  // namespace grainray::cli

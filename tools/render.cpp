@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 
 #include "arguments.hpp"
-#include "commands.hpp"
+#include "command.hpp"
 #include "run_folder.hpp"
 
 namespace grainray::cli {
@@ -112,21 +112,21 @@ int render_frames(const Options& options) {
 }  // namespace
 
 void add_render(CLI::App& app, Action& chosen) {
-    CLI::App* command = app.add_subcommand("render", "Draw a frame, or every frame of a run, as PNG");
+    Command command(app, chosen, "render", "Draw a frame, or every frame of a run, as PNG");
     const auto o = std::make_shared<Options>();
-    command->add_option("FRAME", o->input, "Frame file (.vtp, .csv), or the folder of a run for all its frames")->required()->type_name("");
-    command->add_option("--scene", o->scene, "Scene with planes and camera; else FRAME/../../scene.toml")->type_name("FILE")->check(not_empty());
-    command->add_option("--out", o->out, "Picture, or folder for pictures; else DIR/pictures of the run")->type_name("PNG|DIR")->check(not_empty());
-    command->add_option("--color-by", o->color_by, "Field shown as colour, such as speed, radius, coordination")->type_name("FIELD");
-    command->add_option("--min", o->minimum, "Value of the first colour; else the smallest in each picture")->type_name("VALUE");
-    command->add_option("--max", o->maximum, "Value of the last colour; else the largest in each picture")->type_name("VALUE");
-    command->add_option("--eye", o->eye, "Position of the camera, m")->type_name("X,Y,Z");
-    command->add_option("--target", o->target, "Point it looks at, m")->type_name("X,Y,Z");
-    command->add_option("--up", o->up, "Direction that is up in the picture")->type_name("X,Y,Z");
-    command->add_option("--fov", o->field_of_view, "Vertical field of view, degrees")->type_name("DEGREES");
-    command->add_option("--size", o->size, "Pixels")->type_name("WxH");
-    command->footer("Example: grainray render column/frames/000004.vtp --color-by coordination --eye 8,-20,6 --size 1920x1080");
-    command->callback([o, &chosen] { chosen = [o] { return render_frames(*o); }; });
+    command.argument("FRAME", o->input, "Frame file (.vtp, .csv), or the folder of a run for all its frames");
+    command.option("--scene", o->scene, "FILE", "Scene with planes and camera; else FRAME/../../scene.toml");
+    command.option("--out", o->out, "PNG|DIR", "Picture, or folder for pictures; else DIR/pictures of the run");
+    command.option("--color-by", o->color_by, "FIELD", "Field shown as colour, such as speed, radius, coordination");
+    command.option("--min", o->minimum, "VALUE", "Value of the first colour; else the smallest in each picture");
+    command.option("--max", o->maximum, "VALUE", "Value of the last colour; else the largest in each picture");
+    command.option("--eye", o->eye, "X,Y,Z", "Position of the camera, m");
+    command.option("--target", o->target, "X,Y,Z", "Point it looks at, m");
+    command.option("--up", o->up, "X,Y,Z", "Direction that is up in the picture");
+    command.option("--fov", o->field_of_view, "DEGREES", "Vertical field of view, degrees");
+    command.option("--size", o->size, "WxH", "Pixels");
+    command.footer("Example: grainray render column/frames/000004.vtp --color-by coordination --eye 8,-20,6 --size 1920x1080");
+    command.action([o] { return render_frames(*o); });
 }
 
 }  // namespace grainray::cli

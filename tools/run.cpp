@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include "arguments.hpp"
-#include "commands.hpp"
+#include "command.hpp"
 #include "preflight.hpp"
 #include "restart.hpp"
 #include "run_loop.hpp"
@@ -154,19 +154,19 @@ int run(const Options& options) {
 }  // namespace
 
 void add_run(CLI::App& app, Action& chosen) {
-    CLI::App* command = app.add_subcommand("run", "Simulate a scene");
+    Command command(app, chosen, "run", "Simulate a scene");
     const auto options = std::make_shared<Options>();
-    command->add_option("SCENE", options->scene, "Scene file")->required()->type_name("");
-    add_engine_options(*command, options->engine);
-    command->add_option("--out", options->out, "Folder for the results; else the name of the scene with -out")->type_name("DIR")->check(not_empty());
-    command->add_option("--steps", options->steps, "Steps from where the run starts; else to the end of the scene")->type_name("N");
-    command->add_option("--restart", options->restart, "Checkpoint to go on from, exactly")->type_name("FILE")->check(not_empty());
-    command->add_flag("--force", options->force, "Replace the files of an earlier run in the folder, and no others");
-    command->add_flag("--quiet", options->quiet, "Print errors only");
-    command->footer("Example: grainray run examples/column_collapse.toml --set materials.grain.friction=0.3 --out smooth\n"
+    command.argument("SCENE", options->scene, "Scene file");
+    command.engine_options(options->engine);
+    command.option("--out", options->out, "DIR", "Folder for the results; else the name of the scene with -out");
+    command.option("--steps", options->steps, "N", "Steps from where the run starts; else to the end of the scene");
+    command.option("--restart", options->restart, "FILE", "Checkpoint to go on from, exactly");
+    command.flag("--force", options->force, "Replace the files of an earlier run in the folder, and no others");
+    command.flag("--quiet", options->quiet, "Print errors only");
+    command.footer("Example: grainray run examples/column_collapse.toml --set materials.grain.friction=0.3 --out smooth\n"
                     "Ctrl-C saves the state; the command that goes on from it is printed. The folder holds frames/*.vtp\n"
                     "(ParaView, OVITO), history.csv, summary.json, checkpoint.h5 and scene.toml.");
-    command->callback([options, &chosen] { chosen = [options] { return run(*options); }; });
+    command.action([options] { return run(*options); });
 }
 
 }  // namespace grainray::cli

@@ -4,6 +4,7 @@
 #include <bit>
 #include <chrono>
 #include <cmath>
+#include <optional>
 
 #include <fmt/format.h>
 
@@ -13,6 +14,7 @@ namespace {
 constexpr std::uint64_t health_interval = 1000;  // steps between two looks at the state, at most
 constexpr double batch_seconds = 0.1;            // so long a signal or the progress line may wait
 constexpr std::uint64_t default_checkpoints = 20;
+constexpr std::uint64_t no_step = UINT64_MAX;
 
 using clock = std::chrono::steady_clock;
 
@@ -83,25 +85,44 @@ RunPlan plan_run(const Scene& scene, std::uint64_t first, std::uint64_t last, bo
 
 RunLoop::RunLoop(Simulation& simulation, const Scene& scene, const RunFolder& folder, const RunPlan& plan, bool quiet)
     : simulation_(simulation), scene_(scene), folder_(folder), plan_(plan), progress_(quiet, plan.first, plan.last),
-      history_(folder.history(), history_columns(scene), plan.appends, simulation.time()), has_checkpoint_(plan.has_checkpoint),
-      checkpoint_step_(plan.first) {
+      history_(folder.history(), history_columns(scene), plan.appends, simulation.time()),
+      asked_checkpoint_(plan.has_checkpoint ? plan.first : no_step), written_checkpoint_(asked_checkpoint_) {
     if (scene.terrain && scene.terrain->edge == TerrainEdge::open) lost_.emplace(folder.lost(), lost_columns, plan.appends, simulation.time());
 }
 
 bool RunLoop::run() {
-    if (!plan_.appends) write_first();
+    try {
+        const bool finished = run_to_end();
+        progress_.clear();
+        queue_.finish();
+        return finished;
+    } catch (...) {
+        queue_.wait();
+        throw;
+    }
+}
+
+bool RunLoop::run_to_end() {
+    if (!plan_.appends) look(frame | history | checkpoint);
     else folder_.remove_frames_after(plan_.frames ? plan_.first / plan_.frames : 0);
     while (simulation_.step_count() < plan_.last && !signals_.asked()) {
         advance(next_stop());
         write_lost();
-        write_due();
+        queue_.check();
+        look(due_now());
         progress_.update(simulation_);
     }
-    progress_.clear();
     if (simulation_.step_count() == plan_.last) return true;
-    simulation_.check_health();
-    write_checkpoint_now();
+    look(checkpoint);
     return false;
+}
+
+/// At once, so that the list is whole whenever a checkpoint is written.
+void RunLoop::write_lost() {
+    for (const auto& all = simulation_.lost(); lost_ && lost_written_ < all.size(); ++lost_written_) {
+        const LostParticle& p = all[lost_written_];
+        lost_->row({p.time, static_cast<double>(p.step), static_cast<double>(p.id), p.position.x, p.position.y, p.position.z, p.velocity.x, p.velocity.y, p.velocity.z});
+    }
 }
 
 std::uint64_t RunLoop::next_stop() const {
@@ -127,53 +148,62 @@ void RunLoop::advance(std::uint64_t limit) {
     seconds_per_step_ = seconds_per_step_ > 0 ? 0.5 * (seconds_per_step_ + seconds) : seconds;
 }
 
-void RunLoop::write_first() {
+unsigned RunLoop::due_now() const {
+    const std::uint64_t step = simulation_.step_count();
+    if (step == plan_.last) return frame | history | checkpoint;
+    return (due(step, plan_.frames) ? frame : 0u) | (due(step, plan_.history) ? history : 0u) | (due(step, plan_.checkpoints) ? checkpoint : 0u);
+}
+
+/// The state at one instant, as far as it is to be written.
+struct RunLoop::Output {
+    std::uint64_t step = 0;
+    std::optional<Frame> frame;
+    std::optional<std::vector<double>> row;
+    std::optional<Checkpoint> checkpoint;
+};
+
+std::shared_ptr<const RunLoop::Output> RunLoop::take(unsigned parts) const {
+    auto output = std::make_shared<Output>();
+    output->step = simulation_.step_count();
+    if (parts & frame) output->frame = simulation_.frame();
+    if (parts & history) output->row = history_row(simulation_.statistics(), simulation_.size());
+    if (parts & checkpoint) output->checkpoint = simulation_.checkpoint();
+    return output;
+}
+
+/// Nothing is written of a state that is not sound; the first one was looked at before the run.
+void RunLoop::look(unsigned parts) {
+    if (!parts && !health_due(plan_.first, simulation_.step_count())) return;
     const auto start = clock::now();
-    write_frame();
-    write_history();
-    write_checkpoint_now();
+    if (simulation_.step_count() != plan_.first) simulation_.check_health();
+    write(parts);
     simulation_.profile().output += seconds_since(start);
+}
+
+void RunLoop::write(unsigned parts) {
+    if (asked_checkpoint_ == simulation_.step_count()) parts &= ~unsigned{checkpoint};
+    if (!parts) return;
+    const bool snapshot = parts & (frame | checkpoint);
+    if (snapshot) queue_.wait_for_room();
+    OutputQueue::Job job = [this, output = take(parts)] { write_out(*output); };
+    if (snapshot) queue_.push_snapshot(std::move(job));
+    else queue_.push(std::move(job));
+    if (parts & checkpoint) asked_checkpoint_ = simulation_.step_count();
 }
 
 /// The checkpoint comes last: what it stands for has been written when it appears.
-void RunLoop::write_due() {
-    const std::uint64_t step = simulation_.step_count();
-    const bool end = step == plan_.last, frame = end || due(step, plan_.frames), history = end || due(step, plan_.history),
-               checkpoint = end || due(step, plan_.checkpoints);
-    if (!frame && !history && !checkpoint && !health_due(plan_.first, step)) return;
-    const auto start = clock::now();
-    simulation_.check_health();
-    if (frame) write_frame();
-    if (history) write_history();
-    if (checkpoint) write_checkpoint_now();
-    simulation_.profile().output += seconds_since(start);
-}
-
-void RunLoop::write_frame() {
-    writer_for(scene_.output.format).write(folder_.frame(plan_.frame_index(simulation_.step_count())), simulation_.frame(), scene_.output.fields);
-}
-
-/// At once, so that the list is whole whenever a checkpoint is written.
-void RunLoop::write_lost() {
-    for (const auto& all = simulation_.lost(); lost_ && lost_written_ < all.size(); ++lost_written_) {
-        const LostParticle& p = all[lost_written_];
-        lost_->row({p.time, static_cast<double>(p.step), static_cast<double>(p.id), p.position.x, p.position.y, p.position.z, p.velocity.x, p.velocity.y, p.velocity.z});
-    }
-}
-
-void RunLoop::write_history() { history_.row(history_row(simulation_.statistics(), simulation_.size())); }
-
-void RunLoop::write_checkpoint_now() {
-    if (has_checkpoint_ && checkpoint_step_ == simulation_.step_count()) return;
-    write_checkpoint(folder_.checkpoint(), simulation_.checkpoint());
-    has_checkpoint_ = true;
-    checkpoint_step_ = simulation_.step_count();
+void RunLoop::write_out(const Output& output) {
+    if (output.frame) writer_for(scene_.output.format).write(folder_.frame(plan_.frame_index(output.step)), *output.frame, scene_.output.fields);
+    if (output.row) history_.row(*output.row);
+    if (!output.checkpoint) return;
+    write_checkpoint(folder_.checkpoint(), *output.checkpoint);
+    written_checkpoint_ = output.step;
 }
 
 std::string RunLoop::last_checkpoint() const {
-    if (!has_checkpoint_) return "no checkpoint was written";
-    return fmt::format("the last good checkpoint is {} (step {}, t = {:.6g} s)", folder_.checkpoint().string(), checkpoint_step_,
-                       static_cast<double>(checkpoint_step_) * scene_.dt);
+    if (written_checkpoint_ == no_step) return "no checkpoint was written";
+    return fmt::format("the last good checkpoint is {} (step {}, t = {:.6g} s)", folder_.checkpoint().string(), written_checkpoint_,
+                       static_cast<double>(written_checkpoint_) * scene_.dt);
 }
 
 }  // namespace grainray::cli

@@ -4,9 +4,11 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <string>
 
 #include "grainray/output.hpp"
 #include "grainray/simulation.hpp"
+#include "output/queue.hpp"
 #include "progress.hpp"
 #include "run_folder.hpp"
 #include "signals.hpp"
@@ -27,21 +29,26 @@ RunPlan plan_run(const Scene&, std::uint64_t first, std::uint64_t last, bool app
 class RunLoop {
 public:
     RunLoop(Simulation&, const Scene&, const RunFolder&, const RunPlan&, bool quiet);
-    /// False where a signal stopped it; its state is then in the checkpoint. Throws SimulationError.
+    /// False where a signal stopped it; its state is then in the checkpoint. Throws SimulationError. In every case what
+    /// was handed to the writing thread has been written, up to the first file that could not be.
     bool run();
     Progress& progress() { return progress_; }
     /// "the last good checkpoint is FILE (step N, t = T s)", or that there is none.
     std::string last_checkpoint() const;
 
 private:
-    void write_first();
-    void write_due();
-    void write_frame();
-    void write_history();
-    void write_lost();
-    void write_checkpoint_now();
+    enum Part : unsigned { frame = 1, history = 2, checkpoint = 4 };
+    struct Output;
+
+    bool run_to_end();
+    unsigned due_now() const;
+    void look(unsigned parts);
+    void write(unsigned parts);
+    std::shared_ptr<const Output> take(unsigned parts) const;
+    void write_out(const Output&);
     std::uint64_t next_stop() const;
     void advance(std::uint64_t limit);
+    void write_lost();
 
     Simulation& simulation_;
     const Scene& scene_;
@@ -50,11 +57,11 @@ private:
     StopSignals signals_;
     Progress progress_;
     HistoryFile history_;
-    std::optional<HistoryFile> lost_;  ///< of an open terrain
+    std::optional<HistoryFile> lost_;  ///< of an open terrain; of the stepping thread alone
     std::size_t lost_written_ = 0;
     double seconds_per_step_ = 0;
-    bool has_checkpoint_ = false;
-    std::uint64_t checkpoint_step_ = 0;
+    std::uint64_t asked_checkpoint_, written_checkpoint_;  ///< steps; the second belongs to the writing thread
+    OutputQueue queue_;  // last: its jobs use the others
 };
 
 }  // namespace grainray::cli

@@ -3,10 +3,7 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
-#include <algorithm>
-
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <tbb/global_control.h>
 
 #include "grainray/neighbors.hpp"
@@ -21,13 +18,6 @@ void require_device_name(const std::string& device) { require_choice("--device",
 
 }  // namespace
 
-void add_engine_options(CLI::App& app, EngineOptions& options) {
-    app.add_option("--device", options.device, "auto, cpu or cuda")->capture_default_str();
-    app.add_option("--search", options.search, "Neighbour search: auto, brute or cells")->capture_default_str();
-    app.add_option("--threads", options.threads, "CPU threads; 0: all")->capture_default_str();
-    add_overrides(app, options.set);
-}
-
 Scene load_resolved(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
     Scene scene = load_scene(file, overrides);
     scene.source = resolved_text(scene, overrides);
@@ -36,10 +26,10 @@ Scene load_resolved(const std::filesystem::path& file, const std::vector<std::st
 
 void require_backend(const std::string& option, const std::string& backend, Device device) {
     std::vector<std::string> known{"auto"};
-    for (const BackendInfo& info : search_backends(device))
+    for (const BackendInfo& info : search_backends(device)) {
         if (info.available) known.push_back(info.name);
-    if (backend == "rays" && std::find(known.begin(), known.end(), backend) == known.end())
-        throw InputError(fmt::format("{}: search by ray tracing ('rays') is not built yet; known: {}", option, fmt::join(known, ", ")));
+        else if (info.name == backend) throw InputError(fmt::format("{}: '{}' is not available on {}: {}", option, backend, name(device), info.reason));
+    }
     require_choice(option, backend, known);
 }
 

@@ -17,7 +17,6 @@ struct EngineOptions {
     int threads = 0;
     std::vector<std::string> set;
 };
-void add_engine_options(CLI::App&, EngineOptions&);
 
 /// load_scene with the overrides; `source` is then a text that stands by itself (resolved_scene.hpp).
 Scene load_resolved(const std::filesystem::path&, const std::vector<std::string>& overrides);

@@ -10,7 +10,7 @@ namespace grainray::cli {
 std::string hash_text(std::uint64_t hash) { return fmt::format("0x{:016x}", hash); }
 
 nlohmann::ordered_json profile_json(const Profile& p) {
-    return {{"neighbors", p.neighbors}, {"contacts", p.contacts}, {"boundary", p.boundary}, {"dynamics", p.dynamics}, {"output", p.output}};
+    return {{"neighbors", p.neighbors}, {"contacts", p.contacts}, {"boundary", p.boundary}, {"dynamics", p.dynamics}, {"fused", p.fused}, {"output", p.output}};
 }
 
 nlohmann::ordered_json search_json(const SearchReport& s) {

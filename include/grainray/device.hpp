@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstring>
+#include <string>
 #include <string_view>
 #include <type_traits>
 #include <utility>
@@ -19,6 +20,23 @@ constexpr std::string_view name(Device d) { return d == Device::cpu ? "cpu" : "c
 bool cuda_available();
 /// One sentence: why cuda_available() is what it is ("NVIDIA H200, 140 GiB" or "built without CUDA: ...").
 std::string cuda_status();
+
+/// A GPU as the driver shows it.
+struct Gpu {
+    std::string name;
+    int major = 0, minor = 0;  ///< compute capability
+    std::size_t total_bytes = 0, free_bytes = 0;
+    std::string problem;       ///< one sentence; empty where this build can use it
+};
+/// CUDA's versions are 1000 major + 10 minor; 0: none.
+struct CudaReport {
+    int runtime_version = 0;     ///< of this build
+    int driver_supports = 0;     ///< the newest CUDA that the driver serves
+    std::string driver_version;  ///< the driver's own, "580.65.06"; empty where it does not say
+    std::vector<Gpu> gpus;
+};
+/// Asks every GPU, which takes a moment and some memory of each.
+CudaReport cuda_report();
 
 namespace detail {
 // Defined in src/exec/memory.cpp and memory.cu. allocate throws SimulationError with the size asked for.
@@ -85,6 +103,8 @@ public:
         if (size > capacity_) resize_discard(size + size / 8);
         size_ = size;
     }
+    /// Empty, its memory given back.
+    void release() { Array(device_).swap(*this); }
     void clear_bytes() { if (size_) detail::clear(device_, data_, size_ * sizeof(T)); }
 
     void assign(const std::vector<T>& host) {

@@ -36,12 +36,17 @@ enum class ListKind {
 };
 
 struct SearchOptions {
-    std::string backend = "auto";  ///< auto | brute | cells
+    /// auto | brute | cells | rays (Embree on the CPU, OptiX on CUDA) | rays-published (the published algorithm, to compare)
+    std::string backend = "auto";
     ListKind kind = ListKind::full;
     std::uint32_t block = 1;       ///< of ListKind::blocked
     bool ascending = true;         ///< each row in ascending order (else the order is unspecified)
     Vec3f lower{};                 ///< lower corner of the periodic box
     Vec3f period{};                ///< its length along each axis; 0: not periodic. The nearest image counts, once.
+    bool local_order = false;      ///< near points have near indices: then they are looked at in that order, which is faster
+    /// The caller's cudaStream_t, of Device::cuda. find() begins after what is in it, and what is put into it later begins
+    /// after find(). Null: the default stream.
+    void* stream = nullptr;
 };
 
 /// Row i: neighbors[offsets[i]] ... neighbors[offsets[i + 1] - 1]. No row has a cap.
@@ -55,7 +60,7 @@ struct NeighborList {
 struct BackendInfo {
     std::string name;
     bool available = false;
-    std::string reason;  ///< one sentence
+    std::string reason;  ///< one sentence: what it runs on, or why it is off and the remedy
 };
 
 /// A reusable search; keeps its buffers from call to call. Not thread-safe; uses all threads of the CPU or one GPU.

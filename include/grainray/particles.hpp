@@ -40,6 +40,17 @@ GR_HD constexpr std::int32_t far_of(std::int64_t p) {
 GR_HD constexpr Vec3l join(const Near& n, const Far& f) { return {join(n.x, f.x), join(n.y, f.y), join(n.z, f.z)}; }
 GR_HD constexpr Far far_of(const Vec3l& p) { return {far_of(p.x), far_of(p.y), far_of(p.z)}; }
 
+/// Position p inside the periodic box: fine units, period in units, 0 where an axis is not periodic.
+GR_HD constexpr Vec3l into_box(Vec3l p, const Vec3l& period, const Vec3l& lower) {
+    for (int a = 0; a < 3; ++a) {
+        const std::int64_t width = period[a] * (1 << fine_bits);
+        if (width == 0) continue;
+        const std::int64_t r = (p[a] - lower[a]) % width;
+        p[a] = lower[a] + (r < 0 ? r + width : r);
+    }
+    return p;
+}
+
 /// Fixed point to metres and back. unit is a power of two with the largest radius in (2^26, 2^27] units, so a unit is
 /// about 1e-8 of that radius, a fine unit 3e-12, and the world reaches 1e7 radii either way.
 struct PositionScale {

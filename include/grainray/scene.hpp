@@ -164,8 +164,12 @@ enum class Trigger {
     published,  ///< rebuild once a particle has moved the whole skin: misses approaching pairs, for comparison only
 };
 
+struct RaySettings {
+    std::string variant = "default";  ///< default | published
+};
 struct SearchSettings {
-    std::string backend = "auto";  ///< auto | brute | cells
+    std::string backend = "auto";  ///< auto | brute | cells | rays
+    RaySettings rays;
     double skin = 0;               ///< least margin as a fraction of the particle's radius; 0: chosen by the program
     double interval = 0;           ///< steps a margin is sized for: margin = speed dt interval; 0: chosen by the program
     Trigger trigger = Trigger::safe;

@@ -18,6 +18,7 @@ struct Profile {
     double contacts = 0;   ///< forces between particles
     double boundary = 0;   ///< forces from planes
     double dynamics = 0;   ///< integration, damping, margin check
+    double fused = 0;      ///< on CUDA: contacts, boundary and dynamics, one kernel a step
     double output = 0;     ///< statistics, frames, checkpoints
 };
 

@@ -95,8 +95,7 @@ void place_facets(const Scene& scene, const PositionScale& scale, std::uint64_t 
         for (const Mesh& mesh : scene.meshes) now.push_back(mesh_at(mesh, scale, static_cast<double>(step + k) * scene.dt));
         if (scene.terrain) now.push_back(mesh_at({}, {scale.unit, {}}, 0));
     }
-    if (f.now.size() != now.size()) f.now.resize_discard_slack(now.size());
-    detail::copy(f.now.device(), f.now.data(), Device::cpu, now.data(), now.size() * sizeof(SurfaceNow));
+    f.now.assign(now);
 }
 
 bool facets_move(const Scene& scene) {

@@ -8,6 +8,8 @@
 namespace grainray::GRAINRAY_EXEC {
 namespace {
 
+constexpr std::uint32_t no_row = ~0u;
+
 /// Ascending; rows are mostly short, but a boulder on a fine mesh has a long one (Shell 1959, gaps of Ciura).
 GR_HD inline void sort_row(std::uint32_t* row, std::size_t size) {
     for (std::size_t gap : {701u, 301u, 132u, 57u, 23u, 10u, 4u, 1u})
@@ -50,81 +52,62 @@ NearFacets near_facets(const State& s, const StepConstants& constants) {
             p.scale.fine(), p.scale.unit, constants.dt, static_cast<double>(s.age.limit)};
 }
 
-/// Numbers the particles that have candidates and returns how many there are; counts[i] is the length of row i.
-std::size_t number_rows(View<const std::uint64_t> counts, View<std::uint64_t> row) {
-    for_each(row.size, [=] GR_HD(std::size_t i) { row[i] = i < counts.size && counts[i] > 0; });
-    return exclusive_scan(row);
-}
-
 }  // namespace
 
-void facet_candidates(State& s, const StepConstants& constants) {
+void list_facets(State& s, const StepConstants& constants, const Array<std::uint32_t>& old_index) {
+    std::swap(s.facets.list, s.facets.old_list);
     FacetList& list = s.facets.list;
-    list.particles.swap(s.facets.old_list.particles);
-    list.offsets.swap(s.facets.old_list.offsets);
-    list.facets.swap(s.facets.old_list.facets);
-    list.states.swap(s.facets.old_list.states);
+    const FacetList& old_list = s.facets.old_list;
     const NearFacets near = near_facets(s, constants);
-    const std::size_t n = s.facets.count() ? s.size() : 0;
-    Array<std::uint64_t> counts_of(device, n), row_of(device, n + 1);
-    const auto counts = counts_of.view(), row = row_of.view();
+    const std::size_t n = s.size();
+    Array<std::uint64_t> counts_of(device, n), numbers(device, n + 1);
+    const auto counts = counts_of.view(), number = numbers.view();
     for_each(n, [=] GR_HD(std::size_t i) {
         std::uint64_t count = 0;
         near.for_each(i, [&](std::uint32_t) { ++count; });
         counts[i] = count;
     }, 256);
-    const std::size_t rows = number_rows(counts, row);
+    for_each(n + 1, [=] GR_HD(std::size_t i) { number[i] = i < n && counts[i] > 0; });
+    const std::size_t rows = exclusive_scan(number);
+
+    list.row_of.resize_discard(n);
     list.particles.resize_discard_slack(rows);
+    list.forces.resize_discard_slack(rows);
     list.offsets.resize_discard_slack(rows + 1);
     list.offsets.clear_bytes();
-    const auto particles = list.particles.view();
+    const auto row_of = list.row_of.view(), particles = list.particles.view();
     const auto offsets = list.offsets.view();
     for_each(n, [=] GR_HD(std::size_t i) {
+        row_of[i] = counts[i] ? static_cast<std::uint32_t>(number[i]) : no_row;
         if (counts[i] == 0) return;
-        particles[row[i]] = static_cast<std::uint32_t>(i);
-        offsets[row[i]] = counts[i];
+        particles[number[i]] = static_cast<std::uint32_t>(i);
+        offsets[number[i]] = counts[i];
     });
     list.facets.resize_discard_slack(exclusive_scan(offsets));
     list.states.resize_discard_slack(list.facets.size());
     list.shares.resize_discard_slack(list.facets.size());
+
+    const auto was = old_index.view(), old_row = old_list.row_of.view();
     const auto facets = list.facets.view();
+    const auto old_facets = old_list.facets.view();
+    const auto old_offsets = old_list.offsets.view();
+    const auto old_states = old_list.states.view();
+    const auto states = list.states.view();
     for_each(rows, [=] GR_HD(std::size_t k) {
         std::uint64_t slot = offsets[k];
         near.for_each(particles[k], [&](std::uint32_t facet) { facets[slot++] = facet; });
         sort_row(facets.data + offsets[k], slot - offsets[k]);
-    }, 64);
-}
-
-void carry_facets(State& s, const Array<std::uint32_t>& old_index) {
-    const FacetList &old = s.facets.old_list, &list = s.facets.list;
-    constexpr std::uint32_t none = ~0u;
-    Array<std::uint32_t> old_row_of(device, s.size());
-    const auto old_row = old_row_of.view();
-    for_each(s.size(), [=] GR_HD(std::size_t i) { old_row[i] = none; });
-    const auto old_particles = old.particles.view();
-    for_each(old.rows(), [=] GR_HD(std::size_t k) { old_row[old_particles[k]] = static_cast<std::uint32_t>(k); });
-
-    const auto particles = list.particles.view(), was = old_index.view();
-    const auto offsets = list.offsets.view(), old_offsets = old.offsets.view();
-    const auto facets = list.facets.view(), old_facets = old.facets.view();
-    const auto old_states = old.states.view();
-    const auto states = s.facets.list.states.view();
-    for_each(list.rows(), [=] GR_HD(std::size_t k) {
-        const std::uint32_t r = old_row[was[particles[k]]];
-        std::uint64_t o = r == none ? 0 : old_offsets[r];
-        const std::uint64_t end = r == none ? 0 : old_offsets[r + 1];
+        const std::uint32_t r = old_row.size ? old_row[was[particles[k]]] : no_row;
+        std::uint64_t o = r == no_row ? 0 : old_offsets[r];
+        const std::uint64_t end = r == no_row ? 0 : old_offsets[r + 1];
         for (std::uint64_t e = offsets[k]; e < offsets[k + 1]; ++e) {  // both rows ascend
             while (o < end && old_facets[o] < facets[e]) ++o;
             states[e] = o < end && old_facets[o] == facets[e] ? old_states[o] : FacetState{};
         }
-    }, 256);
+    }, 64);
 }
 
 namespace {
-
-struct Add {
-    GR_HD std::size_t operator()(std::size_t a, std::size_t b) const { return a + b; }
-};
 
 template <class Law>
 struct FacetForces {
@@ -142,11 +125,16 @@ struct FacetForces {
     View<const Body> body;
     View<const std::uint32_t> id;
     View<Wrench> wrench;
+    View<Wrench> rows;                 ///< forces go here where there are any, else into `wrench`
     View<std::uint64_t> crossed;
+    View<const std::uint32_t> flags;
+    std::uint32_t step;
     double fine, unit, dt, inverse_force, inverse_torque;
 
     GR_HD void operator()(std::size_t k) const {
+        if (flags[0] < step) return;  // a step of the batch before this one used the list up
         const std::uint32_t i = particles[k];
+        Wrench sum{};
         const FacetParticle particle{convert<double>(join(near[i], far[i])) * fine, near[i].radius * unit, body[i]};
         const std::uint32_t surfaces = static_cast<std::uint32_t>(shapes.surfaces.size);
         for (std::uint64_t e = offsets[k], end = offsets[k + 1]; e < end;) {
@@ -157,9 +145,17 @@ struct FacetForces {
             const FacetEntries entries{facets.data + e, states.data + e, shares.data + e, static_cast<std::uint32_t>(last - e)};
             const FacetForce f = FacetContact<Law>{law, shapes, surface, now[q], parameters[particle.body.material * surfaces + q],
                                                    particle, entries, dt}();
-            if (f.touching) add(wrench[i], convert<float>(f.force), convert<float>(f.torque));
+            if (f.touching) add(sum, convert<float>(f.force), convert<float>(f.torque));
             if (f.crossed) atomic_min(&crossed[0], static_cast<std::uint64_t>(id[i]) << 32 | q);
             e = last;
+        }
+        if (rows.size) {
+            rows[k] = sum;
+            return;
+        }
+        for (int a = 0; a < 3; ++a) {
+            wrench[i].force[a] += sum.force[a];
+            wrench[i].torque[a] += sum.torque[a];
         }
     }
     GR_HD void add(Wrench& w, const Vec3f& force, const Vec3f& torque) const {
@@ -172,25 +168,17 @@ struct FacetForces {
 
 }  // namespace
 
-std::size_t count_lost(const State& s, const LostRegion& region) {
-    const auto near = s.particles.near.view();
-    const auto far = s.particles.far.view();
-    const double fine = s.particles.scale.fine(), unit = s.particles.scale.unit;
-    return reduce(s.size(), std::size_t{0}, [=] GR_HD(std::size_t i) -> std::size_t {
-        return region.lost(convert<double>(join(near[i], far[i])) * fine, near[i].radius * unit);
-    }, Add{});
-}
-
-void facets(State& s, ContactLaw law, const StepConstants& constants, std::uint32_t step) {
+void facets(State& s, ContactLaw law, const StepConstants& constants, std::uint32_t step, FacetTarget target) {
     Facets& f = s.facets;
     const std::size_t surfaces = f.count();
     const Particles& p = s.particles;
-    const View<const SurfaceNow> now{f.now.data() + step * surfaces, surfaces};
+    const View<const SurfaceNow> now{f.now.data() + (f.now.size() > surfaces ? step * surfaces : 0), surfaces};
+    const View<Wrench> rows = target == FacetTarget::rows ? f.list.forces.view() : View<Wrench>{};
     with_law(law, constants.dt, [&](auto functor) {
         for_each(f.list.rows(), FacetForces<decltype(functor)>{
             functor, shapes_of(f), now, f.parameters.view(), f.list.particles.view(), f.list.offsets.view(), f.list.facets.view(),
             f.list.states.view(), f.list.shares.view(), p.near.view(), p.far.view(), p.body.view(), p.id.view(), s.wrench.view(),
-            f.crossed.view(), p.scale.fine(), p.scale.unit, constants.dt, 1.0 / s.quanta.force, 1.0 / s.quanta.torque}, 64);
+            rows, f.crossed.view(), s.flags.view(), step, p.scale.fine(), p.scale.unit, constants.dt, 1.0 / s.quanta.force, 1.0 / s.quanta.torque}, 64);
     });
 }
 

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "boundary/triangles.hpp"
+#include "contacts/wrench.hpp"
 #include "grainray/contacts.hpp"
 #include "grainray/device.hpp"
 
@@ -40,15 +41,21 @@ struct FacetState {
 
 /// Rows of facets for the particles near any; the others have no row.
 struct FacetList {
-    explicit FacetList(Device device) : particles(device), offsets(device), facets(device), states(device), shares(device) {}
+    explicit FacetList(Device device)
+        : row_of(device), particles(device), offsets(device), facets(device), states(device), shares(device), forces(device) {}
+    Array<std::uint32_t> row_of;      ///< of each particle; ~0: none
     Array<std::uint32_t> particles;   ///< of each row, ascending
     Array<std::uint64_t> offsets;     ///< rows + 1
     Array<std::uint32_t> facets;      ///< ascending in each row
     Array<FacetState> states;
     Array<float> shares;              ///< scratch of a step
+    Array<Wrench> forces;             ///< of each row in the present step, where the fused step adds them
     std::size_t rows() const { return particles.size(); }
-    std::size_t bytes() const { return particles.bytes() + offsets.bytes() + facets.bytes() + states.bytes() + shares.bytes(); }
+    std::size_t bytes() const { return row_of.bytes() + forces.bytes() + particles.bytes() + offsets.bytes() + facets.bytes() + states.bytes() + shares.bytes(); }
 };
+
+/// Where the stage puts forces.
+enum class FacetTarget { wrench, rows };
 
 struct Facets {
     explicit Facets(Device device)

@@ -1,57 +1,90 @@
-// Stage: tangential histories from the old list into the new one, whatever order the particles and rows are in now.
-#include "exec/exec.hpp"
+// Stage: tangential histories from one list into the next, whatever order the particles and rows are in, and the pairs
+// that touch. A pair that does not touch has no history: the next evaluation would clear it.
+#include "contacts/old_rows.hpp"
+#include "exec/rows.hpp"
 #include "stages.hpp"
 
 namespace grainray::GRAINRAY_EXEC {
 namespace {
 
-struct OldRows {
-    View<const std::uint64_t> offsets;
-    View<const std::uint32_t> partners;
-    View<const Vec3f> history;
+struct Touches {
+    View<const Near> near;
+    View<const Far> far;
+    Vec3l period;
 
-    GR_HD bool look_up(std::uint32_t row, std::uint32_t partner, Vec3f& found) const {
-        for (std::uint64_t e = offsets[row]; e < offsets[row + 1]; ++e)
-            if (partners[e] == partner) {
-                found = history[e];
-                return true;
-            }
-        return false;
+    explicit Touches(const State& s) : near(s.particles.near.view()), far(s.particles.far.view()), period(s.period) {}
+    GR_HD bool operator()(std::size_t i, std::size_t j) const {
+        const bool periodic = period.x > 0 || period.y > 0 || period.z > 0;
+        const Separation s = periodic ? separation(near[i], far[i], near[j], far[j], period) : separation(near[i], near[j]);
+        return s.gap > 0;
+    }
+};
+
+/// Which pairs of the new list touch, and with what history.
+struct Carry {
+    Touches touches;
+    OldRows old;
+    View<const std::uint32_t> was;
+
+    GR_HD Vec3f history(std::size_t i, std::uint32_t j) const {
+        Vec3f h{};
+        if (!old.look_up(was[i], was[j], h) && old.look_up(was[j], was[i], h)) return -h;  // it stood in the other row
+        return h;
+    }
+};
+
+struct AddFigures {
+    GR_HD ListFigures operator()(const ListFigures& a, const ListFigures& b) const {
+        return {a.mean_neighbors + b.mean_neighbors, a.mean_margin_ratio + b.mean_margin_ratio};
     }
 };
 
 }  // namespace
 
-void carry_pairs(const ContactList& old_list, const Array<std::uint32_t>& old_index, ContactList& list) {
-    const OldRows old{old_list.offsets.view(), old_list.partners.view(), old_list.history.view()};
-    const auto was = old_index.view();
-    const auto offsets = list.offsets.view();
-    const auto partners = list.partners.view();
-    const auto history = list.history.view();
-    for_each(list.offsets.size() - 1, [=] GR_HD(std::size_t i) {
-        const std::uint32_t was_i = was[i];
-        for (std::uint64_t e = offsets[i]; e < offsets[i + 1]; ++e) {
-            const std::uint32_t was_j = was[partners[e]];
-            Vec3f h;
-            if (old.look_up(was_i, was_j, h)) history[e] = h;
-            else if (old.look_up(was_j, was_i, h)) history[e] = -h;  // the pair stood in the other row
-            else history[e] = Vec3f{};
+void retire(State& s, ContactList& old_list) { keep_live(s.grains, old_list); }
+
+void list_pairs(State& s, NeighborList& found, const ContactList& old_list, const Array<std::uint32_t>& old_index) {
+    lay_out(found, Carry{Touches(s), OldRows(old_list), old_index.view()}, s.grains);
+}
+
+void touching(const State& s, ContactList& out) {
+    const std::size_t n = s.size();
+    const Rows rows(s.grains);
+    const Touches touches(s);
+    out.offsets.resize_discard(n + 1);
+    out.offsets.clear_bytes();
+    const auto offsets = out.offsets.view();
+    for_each(n, [=] GR_HD(std::size_t i) {
+        std::uint64_t count = 0;
+        for (std::uint32_t k = 0, end = rows.size(i); k < end; ++k) count += touches(i, rows.partner(rows.entry(i, k)));
+        offsets[i] = count;
+    });
+    out.partners.resize_discard(exclusive_scan(offsets));
+    out.history.resize_discard(out.partners.size());
+    const auto partners = out.partners.view();
+    const auto history = out.history.view();
+    for_each(n, [=] GR_HD(std::size_t i) {
+        std::uint64_t slot = offsets[i];
+        for (std::uint32_t k = 0, end = rows.size(i); k < end; ++k) {
+            const std::uint64_t e = rows.entry(i, k);
+            if (!touches(i, rows.partner(e))) continue;
+            partners[slot] = rows.partner(e);
+            history[slot++] = rows.history(e);
         }
     });
 }
 
-void carry_walls(const ContactList& old_list, const Array<std::uint32_t>& old_index, ContactList& list) {
-    const OldRows old{old_list.offsets.view(), old_list.partners.view(), old_list.history.view()};
-    const auto was = old_index.view();
-    const auto offsets = list.offsets.view();
-    const auto partners = list.partners.view();
-    const auto history = list.history.view();
-    for_each(list.offsets.size() - 1, [=] GR_HD(std::size_t i) {
-        for (std::uint64_t e = offsets[i]; e < offsets[i + 1]; ++e) {
-            Vec3f h;
-            history[e] = old.look_up(was[i], partners[e], h) ? h : Vec3f{};
-        }
-    });
+ListFigures list_figures(const State& s) {
+    const Rows rows(s.grains);
+    const auto built = s.built.view(), near = s.particles.near.view();
+    const std::uint32_t block = s.block;
+    const double n = static_cast<double>(s.size());
+    const ListFigures sum = reduce(s.size(), ListFigures{}, [=] GR_HD(std::size_t i) {
+        double sides = 0;
+        for (std::uint32_t k = 0, end = rows.size(i); k < end; ++k) sides += i / block == rows.partner(rows.entry(i, k)) / block ? 2 : 1;
+        return ListFigures{sides, static_cast<double>(built[i].radius) / near[i].radius};
+    }, AddFigures{});
+    return {sum.mean_neighbors / n, sum.mean_margin_ratio / n};
 }
 
 }  // namespace grainray::GRAINRAY_EXEC

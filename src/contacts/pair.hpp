@@ -77,6 +77,7 @@ struct PairLoop {
     double inverse_force, inverse_torque; ///< 1 / quanta
     Vec3l period;
     View<Wrench> wrench;
+    View<std::uint8_t> touched;           ///< of the CPU: 1 where a history may be other than zero
 
     GR_HD const PairParameters& of(std::uint32_t a, std::uint32_t b) const { return parameters[a * materials + b]; }
     bool periodic() const { return period.x > 0 || period.y > 0 || period.z > 0; }

@@ -97,6 +97,12 @@ void atomic_min(T* address, T value) {
     while (value < old && !ref.compare_exchange_weak(old, value, std::memory_order_relaxed)) {}
 }
 
+/// Adds each value[k] to to[k].
+template <std::size_t n>
+void atomic_add_together(std::int64_t* to, const std::array<std::int64_t, n>& value) {
+    for (std::size_t k = 0; k < n; ++k) atomic_add(&to[k], value[k]);
+}
+
 /// What each work item of a Finder (neighbors/list.hpp) finds, twice: searched once, then kept from the first pass.
 template <class Finder>
 class Found {

@@ -7,6 +7,8 @@
 #include <thrust/iterator/counting_iterator.h>
 #include <thrust/iterator/transform_iterator.h>
 
+#include <array>
+
 #include "exec/cuda_error.hpp"
 #include "grainray/device.hpp"
 
@@ -35,6 +37,19 @@ inline void* scratch(std::size_t bytes) {
     return memory.data();
 }
 
+/// Waits for the device and reads one value from it.
+template <class T>
+T fetch(const T* value) {
+    static T* const landing = [] {
+        void* p = nullptr;
+        check(cudaMallocHost(&p, sizeof(T)), "host memory");
+        return static_cast<T*>(p);
+    }();
+    check(cudaMemcpyAsync(landing, value, sizeof(T), cudaMemcpyDeviceToHost), "copy");
+    check(cudaStreamSynchronize(nullptr), "copy");
+    return *landing;
+}
+
 template <class T, class F, class Op>
 T reduce(std::size_t n, T identity, const F& f, const Op& op) {
     static Array<T> result(Device::cuda, 1);
@@ -42,19 +57,21 @@ T reduce(std::size_t n, T identity, const F& f, const Op& op) {
     std::size_t bytes = 0;
     check(cub::DeviceReduce::Reduce(nullptr, bytes, values, result.data(), n, op, identity), "reduce");
     check(cub::DeviceReduce::Reduce(scratch(bytes), bytes, values, result.data(), n, op, identity), "reduce");
-    return result.to_host()[0];
+    return fetch(result.data());
 }
 
 template <class T>
 T exclusive_scan(View<T> values) {
     if (values.size == 0) return T{};
-    T last{}, start{};
-    check(cudaMemcpy(&last, values.end() - 1, sizeof(T), cudaMemcpyDeviceToHost), "scan");
+    Array<T> total(Device::cuda, 1);
+    const auto sum = total.view();
+    const T* last = values.end() - 1;
+    for_each(1, [=] GR_HD(std::size_t) { sum[0] = *last; });
     std::size_t bytes = 0;
     check(cub::DeviceScan::ExclusiveSum(nullptr, bytes, values.data, values.data, values.size), "scan");
     check(cub::DeviceScan::ExclusiveSum(scratch(bytes), bytes, values.data, values.data, values.size), "scan");
-    check(cudaMemcpy(&start, values.end() - 1, sizeof(T), cudaMemcpyDeviceToHost), "scan");
-    return start + last;
+    for_each(1, [=] GR_HD(std::size_t) { sum[0] += *last; });
+    return fetch(sum.data);
 }
 
 template <class Key>
@@ -90,33 +107,82 @@ GR_HD void atomic_min(T* address, T value) {
 #endif
 }
 
-/// What each work item of a Finder (neighbors/list.hpp) finds, twice: searching again costs less than keeping it would.
+template <class T>
+GR_HD void atomic_max(T* address, T value) {
+#if defined(__CUDA_ARCH__)
+    using Word = std::conditional_t<sizeof(T) == 8, unsigned long long, unsigned>;
+    atomicMax(reinterpret_cast<Word*>(address), static_cast<Word>(value));
+#else
+    if (value > *address) *address = value;
+#endif
+}
+
+/// Adds each value[k] to to[k], in one go for the threads of a warp that have the same `to`. |value| < 2^42.
+template <std::size_t n>
+GR_HD void atomic_add_together(std::int64_t* to, const std::array<std::int64_t, n>& value) {
+#if defined(__CUDA_ARCH__) && __CUDA_ARCH__ >= 800
+    const unsigned group = __match_any_sync(__activemask(), reinterpret_cast<unsigned long long>(to));
+    const bool leader = __ffs(group) - 1 == static_cast<int>(threadIdx.x % 32);
+    for (std::size_t k = 0; k < n; ++k) {
+        const std::uint32_t low = __reduce_add_sync(group, static_cast<std::uint32_t>(value[k]) & 0xffff);
+        const std::int32_t high = __reduce_add_sync(group, static_cast<std::int32_t>(value[k] >> 16));
+        if (leader) atomic_add(&to[k], std::int64_t{high} * 65536 + low);
+    }
+#else
+    for (std::size_t k = 0; k < n; ++k) atomic_add(&to[k], value[k]);
+#endif
+}
+
+/// What each work item of a Finder (neighbors/list.hpp) finds, twice. The first finds of an item are kept in slots; items
+/// that found more are searched again.
 template <class Finder>
 class Found {
 public:
     struct Row {
         Finder finder;
+        View<std::uint32_t> slots;  ///< slot s of item k at s * items + k
+        View<std::uint8_t> counts;  ///< 255: more than the slots hold
         std::size_t k;
+        bool first_time;
+
         template <class Emit>
         GR_HD void for_each(const Emit& emit) const {
+            const std::size_t items = counts.size;
+            if (!first_time && counts[k] <= slots_each) {
+                for (std::uint32_t s = 0; s < counts[k]; ++s) emit(slots[s * items + k]);
+                return;
+            }
+            std::uint32_t found = 0;
             finder.find(k, [&](std::uint32_t j, bool hit) {
-                if (hit) emit(j);
+                if (!hit) return;
+                if (first_time && found < slots_each) slots[found * items + k] = j;
+                ++found;
+                emit(j);
             });
+            if (first_time) counts[k] = static_cast<std::uint8_t>(found <= slots_each ? found : 255u);
         }
     };
 
-    Found(const Finder& finder, std::size_t items) : finder_(finder), items_(items) {}
+    Found(const Finder& finder, std::size_t items) : finder_(finder), slots_(Device::cuda, items * slots_each), counts_(Device::cuda, items) {}
     template <class Visit>
-    void search(const Visit& visit) {
+    void search(const Visit& visit) { each(visit, true); }
+    template <class Visit>
+    void again(const Visit& visit) { each(visit, false); }
+
+    static constexpr std::uint32_t slots_each = 24;
+
+    template <class Visit>
+    void each(const Visit& visit, bool first_time) {
         const Finder finder = finder_;
-        cuda::for_each(items_, [=] GR_HD(std::size_t k) { visit(k, Row{finder, k}); });
+        const auto slots = slots_.view();
+        const auto counts = counts_.view();
+        cuda::for_each(counts.size, [=] GR_HD(std::size_t k) { visit(k, Row{finder, slots, counts, k, first_time}); });
     }
-    template <class Visit>
-    void again(const Visit& visit) { search(visit); }
 
 private:
     Finder finder_;
-    std::size_t items_;
+    Array<std::uint32_t> slots_;
+    Array<std::uint8_t> counts_;
 };
 
 inline void synchronize() { check(cudaDeviceSynchronize(), "synchronize"); }

@@ -1,48 +1,44 @@
-// Arrays on a CUDA device, and whether there is one.
+// Arrays on a CUDA device.
 #include "exec/memory.hpp"
 
-#include <cstdio>
+#include <cstdint>
 
 #include "exec/cuda_error.hpp"
+#include "exec/gpus.hpp"
 
 namespace grainray {
 namespace {
 
-struct Probe {
-    bool available = false;
-    std::string status;
+using grainray::cuda::probe;
 
-    Probe() {
-        int count = 0;
-        const cudaError_t error = cudaGetDeviceCount(&count);
-        if (error != cudaSuccess || count == 0) {
-            status = error == cudaErrorInsufficientDriver ? "the NVIDIA driver is missing or older than this build needs; install or update it"
-                     : error == cudaErrorNoDevice || count == 0 ? "no NVIDIA GPU is visible"
-                                                                : std::string("CUDA: ") + cudaGetErrorString(error);
-            return;
-        }
-        cudaDeviceProp p{};
-        if (cudaGetDeviceProperties(&p, 0) != cudaSuccess) {
-            status = "the GPU does not answer";
-            return;
-        }
-        available = true;
-        char text[256];
-        std::snprintf(text, sizeof text, "%s, %.0f GiB, compute capability %d.%d", p.name,
-                      static_cast<double>(p.totalGlobalMem) / (1 << 30), p.major, p.minor);
-        status = text;
-    }
-};
+/// The driver's pool, which keeps what is freed: memory that a list update needs for a moment serves the next one.
+cudaMemPool_t pool() {
+    static const cudaMemPool_t keeping = [] {
+        cudaMemPool_t p{};
+        std::uint64_t everything = ~std::uint64_t{0};
+        grainray::cuda::check(cudaDeviceGetDefaultMemPool(&p, 0), "memory pool");
+        grainray::cuda::check(cudaMemPoolSetAttribute(p, cudaMemPoolAttrReleaseThreshold, &everything), "memory pool");
+        return p;
+    }();
+    return keeping;
+}
 
-const Probe& probe() {
-    static const Probe p;
-    return p;
+/// Sizes in steps of about a sixteenth: arrays whose size drifts fit where they were before.
+std::size_t rounded(std::size_t bytes) {
+    std::size_t step = 512;
+    while (step * 32 < bytes) step *= 2;
+    return (bytes + step - 1) / step * step;
 }
 
 void* allocate(std::size_t bytes) {
     if (!probe().available) throw InputError("device 'cuda' asked for, but " + probe().status);
+    bytes = rounded(bytes);
     void* p = nullptr;
-    if (cudaMalloc(&p, bytes) != cudaSuccess) {
+    if (cudaMallocFromPoolAsync(&p, bytes, pool(), nullptr) == cudaSuccess) return p;
+    cudaGetLastError();
+    cudaDeviceSynchronize();
+    cudaMemPoolTrimTo(pool(), 0);  // what is free but cut into pieces goes back to the driver
+    if (cudaMallocFromPoolAsync(&p, bytes, pool(), nullptr) != cudaSuccess) {
         cudaGetLastError();
         std::size_t free = 0, total = 0;
         cudaMemGetInfo(&free, &total);
@@ -58,8 +54,9 @@ const memory::Cuda& memory::cuda() {
     static const Cuda present{
         [] { return probe().available; },
         [] { return probe().status; },
+        grainray::cuda::report,
         allocate,
-        [](void* p) noexcept { cudaFree(p); },
+        [](void* p) noexcept { cudaFreeAsync(p, nullptr); },
         [](void* to, const void* from, std::size_t bytes) { grainray::cuda::check(cudaMemcpy(to, from, bytes, cudaMemcpyDefault), "copy"); },
         [](void* p, std::size_t bytes) { grainray::cuda::check(cudaMemset(p, 0, bytes), "clear"); }};
     return present;

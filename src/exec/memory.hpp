@@ -4,11 +4,14 @@
 #include <cstddef>
 #include <string>
 
+#include "grainray/device.hpp"
+
 namespace grainray::memory {
 
 struct Cuda {
     bool (*available)();
     std::string (*status)();
+    CudaReport (*report)();
     void* (*allocate)(std::size_t);
     void (*deallocate)(void*) noexcept;
     void (*copy)(void*, const void*, std::size_t);

@@ -21,7 +21,7 @@ struct Packed {
 struct Request {
     ListKind kind;
     std::uint32_t block;
-    bool ascending;
+    bool ascending, local_order;
     Vec3f lower, period;
     bool periodic() const { return period.x > 0 || period.y > 0 || period.z > 0; }
 };
@@ -32,6 +32,14 @@ public:
     virtual void pairs(const Packed& points, const Request&, NeighborList&) = 0;
     virtual void queries(const Packed& queries, const Packed& points, const Request&, NeighborList&) = 0;
     virtual std::size_t memory_bytes() const = 0;
+    /// What a reader of its times should know; empty: nothing.
+    virtual std::string note() const { return {}; }
+};
+
+/// Whether a back end works here, and one sentence: what it runs on, or why it is off and what to do.
+struct Status {
+    bool available;
+    std::string reason;
 };
 
 /// Packs caller's points; throws InputError naming the first bad one. `what` is "point" or "query".
@@ -43,10 +51,18 @@ namespace grainray::cpu {
 void pack_points(const Points&, const neighbors::Request&, const char* what, neighbors::Packed&);
 std::unique_ptr<neighbors::Backend> make_brute();
 std::unique_ptr<neighbors::Backend> make_cells();
+std::unique_ptr<neighbors::Backend> make_embree();
+std::unique_ptr<neighbors::Backend> make_embree_published();
+neighbors::Status embree_status();
 }  // namespace grainray::cpu
 
 namespace grainray::cuda {
 void pack_points(const Points&, const neighbors::Request&, const char* what, neighbors::Packed&);
+/// What is put into stream `second` from now on begins after what stream `first` holds now. Null: the default stream.
+void order_streams(void* first, void* second);
 std::unique_ptr<neighbors::Backend> make_brute();
 std::unique_ptr<neighbors::Backend> make_cells();
+std::unique_ptr<neighbors::Backend> make_optix();
+std::unique_ptr<neighbors::Backend> make_optix_published();
+neighbors::Status optix_status();
 }  // namespace grainray::cuda

@@ -67,7 +67,7 @@ template <class Finder>
 struct Fill {
     Finder finder;
     View<const std::uint64_t> offsets;
-    View<std::uint64_t> mirror;    ///< where the next mirrored entry of a row goes
+    View<std::uint32_t> next;      ///< where the next mirrored entry of a row goes, from its start
     View<std::uint32_t> entries;
     std::uint32_t block;
 
@@ -77,7 +77,7 @@ struct Fill {
         std::uint64_t slot = offsets[i];
         row.for_each([&](std::uint32_t j) {
             entries[slot++] = j;
-            if (i / block != j / block) entries[atomic_add(&mirror[j], std::uint64_t{1})] = i;
+            if (i / block != j / block) entries[offsets[j] + atomic_add(&next[j], 1u)] = i;
         });
     }
 };
@@ -91,20 +91,17 @@ void build_list(const Finder& finder, std::size_t items, std::size_t n, const ne
     // Blocks generalise the kinds: in one endless block each pair stands once, in blocks of one it stands twice.
     const std::uint32_t block = request.kind == ListKind::half ? 0xffffffffu : request.kind == ListKind::full ? 1u : request.block;
     Array<std::uint32_t> own_counts(device, n);
-    Array<std::uint64_t> mirrors(device, n);
     own_counts.clear_bytes();
     list.offsets.resize_discard(n + 1);
     list.offsets.clear_bytes();
     const auto offsets = list.offsets.view();
     const auto own = own_counts.view();
-    const auto mirror = mirrors.view();
 
     Found<Finder> found(finder, items);
     found.search(rows::Count<Finder>{finder, own, offsets, block});
     list.neighbors.resize_discard_slack(exclusive_scan(offsets));
-    for_each(n, [=] GR_HD(std::size_t i) { mirror[i] = offsets[i] + own[i]; });
     const auto entries = list.neighbors.view();
-    found.again(rows::Fill<Finder>{finder, offsets, mirror, entries, block});
+    found.again(rows::Fill<Finder>{finder, offsets, own, entries, block});
     if (request.ascending)
         for_each(n, [=] GR_HD(std::size_t i) { rows::sort(entries.data + offsets[i], offsets[i + 1] - offsets[i]); });
 }

@@ -1,40 +1,17 @@
-// NeighborSearch and the registry of back ends.
-#include <array>
+// NeighborSearch: packs the caller's points, takes the back end asked for or the one that measures fastest, and runs it.
+#include <chrono>
 #include <cmath>
+#include <functional>
 #include <map>
 
-#include "neighbors/backend.hpp"
+#include "neighbors/choice.hpp"
+#include "neighbors/registry.hpp"
 
 namespace grainray {
 namespace {
 
-using Factory = std::unique_ptr<neighbors::Backend> (*)();
-
-/// The registry: one row a back end. A null factory: not on that device.
-struct Row {
-    const char* name;
-    Factory cpu, cuda;
-};
-#ifdef GRAINRAY_HAS_CUDA
-#define GRAINRAY_ROW(name) Row{#name, cpu::make_##name, cuda::make_##name}
-constexpr bool built_with_cuda = true;
-#else
-#define GRAINRAY_ROW(name) Row{#name, cpu::make_##name, nullptr}
-constexpr bool built_with_cuda = false;
-#endif
-constexpr std::array registry{GRAINRAY_ROW(brute), GRAINRAY_ROW(cells)};
-
-/// Below this many points all pairs are tested faster than cells are sorted.
-constexpr std::size_t brute_is_faster_below = 256;
-
-Factory factory(const Row& row, Device device) { return device == Device::cpu ? row.cpu : row.cuda; }
-
-std::string known_names(Device device) {
-    std::string names = "auto";
-    for (const Row& row : registry)
-        if (factory(row, device)) names += std::string(", ") + row.name;
-    return names;
-}
+constexpr std::size_t brute_is_faster_below = 256;     ///< all pairs are tested before cells are sorted
+constexpr std::size_t worth_measuring_from = 5'000;    ///< below, no choice is worth its measurement
 
 void pack(Device device, const Points& points, const neighbors::Request& request, const char* what, neighbors::Packed& packed) {
 #ifdef GRAINRAY_HAS_CUDA
@@ -44,13 +21,41 @@ void pack(Device device, const Points& points, const neighbors::Request& request
     cpu::pack_points(points, request, what, packed);
 }
 
+std::vector<std::string> candidates(Device device) {
+    std::vector<std::string> names;
+    for (const neighbors::Row& row : neighbors::registry())
+        if (row.automatic && row.status(device).available) names.push_back(row.name);
+    return names;
+}
+
+neighbors::Facts facts(const neighbors::Packed& points, std::size_t entries) {
+    neighbors::Facts f;
+    f.points = static_cast<double>(points.size());
+    f.entries = static_cast<double>(std::max<std::size_t>(entries, 1));
+    const double mean = std::max(static_cast<double>(points.mean_reach), 1e-30);
+    f.spread = points.max_reach / mean;
+    f.crowding = f.points;
+    for (int a = 0; a < 3; ++a) f.crowding *= mean / (static_cast<double>(points.upper[a]) - points.lower[a] + mean);
+    return f;
+}
+
+void order_streams([[maybe_unused]] void* first, [[maybe_unused]] void* second) {
+#ifdef GRAINRAY_HAS_CUDA
+    if (first != second) cuda::order_streams(first, second);
+#endif
+}
+
 }  // namespace
 
 struct NeighborSearch::Impl {
+    using Run = std::function<void(neighbors::Backend&)>;
+
     Device device;
     SearchOptions options;
     std::map<std::string, std::unique_ptr<neighbors::Backend>> made;
     neighbors::Packed points, queries;
+    std::map<bool, neighbors::Choice> choices;  ///< of pairs (false) and of queries (true)
+    std::size_t entries = 0;                    ///< of the last list
     std::string backend, reason;
 
     Impl(Device d, SearchOptions o) : device(d), options(std::move(o)), points(d), queries(d) {
@@ -58,33 +63,78 @@ struct NeighborSearch::Impl {
         for (int a = 0; a < 3; ++a)
             if (!std::isfinite(options.period[a]) || options.period[a] < 0 || !std::isfinite(options.lower[a]))
                 throw InputError("periodic box: its lower corner must be finite and its lengths finite and not negative");
+        if (options.stream && device == Device::cpu) throw InputError("a stream is given, but the search is on the CPU; give none or Device::cuda");
         if (options.block == 0) throw InputError("block must be at least 1");
-        if (options.backend != "auto") require(options.backend);
+        if (options.backend != "auto") neighbors::require_backend(options.backend, device);
     }
 
-    const Row& require(const std::string& name) const {
-        for (const Row& row : registry)
-            if (name == row.name && factory(row, device)) return row;
-        throw InputError("search back end '" + name + "' is not known for device '" + std::string(grainray::name(device)) +
-                         "'; known are: " + known_names(device));
-    }
+    neighbors::Request request() const { return {options.kind, options.block, options.ascending, options.local_order, options.lower, options.period}; }
 
-    neighbors::Request request() const { return {options.kind, options.block, options.ascending, options.lower, options.period}; }
-
-    neighbors::Backend& choose(std::size_t n) {
-        if (options.backend != "auto") {
-            backend = options.backend;
-            reason = "asked for";
-        } else if (n < brute_is_faster_below) {
-            backend = "brute";
-            reason = "fewer than " + std::to_string(brute_is_faster_below) + " points";
-        } else {
-            backend = "cells";
-            reason = "the fastest here for " + std::to_string(brute_is_faster_below) + " points and more";
-        }
-        auto& instance = made[backend];
-        if (!instance) instance = factory(require(backend), device)();
+    neighbors::Backend& named(const std::string& name) {
+        auto& instance = made[name];
+        if (!instance) instance = neighbors::require_backend(name, device).make(device);
         return *instance;
+    }
+
+    void run_with(const std::string& name, const std::string& why, const Run& run) {
+        neighbors::Backend& b = named(name);
+        run(b);
+        backend = name;
+        reason = b.note().empty() ? why : why + "; " + b.note();
+    }
+
+    /// Seconds that one search takes until its list is there.
+    double timed(const Run& run, const std::string& name, const NeighborList& list) {
+        neighbors::Backend& b = named(name);
+        const auto start = std::chrono::steady_clock::now();
+        run(b);
+        std::uint32_t last = 0;  // reading a result waits for the device
+        if (list.neighbors.size()) detail::copy(Device::cpu, &last, device, list.neighbors.data() + list.neighbors.size() - 1, sizeof last);
+        return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    }
+
+    /// Measures each of `due`; the list is right in any case.
+    void measure(neighbors::Choice& choice, const std::vector<std::size_t>& due, const neighbors::Facts& now, const Run& run, const NeighborList& list) {
+        const auto start = std::chrono::steady_clock::now();
+        bool last_failed = false;
+        for (const std::size_t c : due) {
+            const std::string& name = choice.candidates()[c].name;
+            try {
+                double seconds = timed(run, name, list);
+                if (!choice.out_of_the_race(seconds)) seconds = timed(run, name, list);  // the first also made its memory
+                choice.measured(c, seconds, now);
+                last_failed = false;
+            } catch (const SimulationError&) {  // out of memory, say: the others will do
+                choice.measured(c, 1e9, now);
+                last_failed = true;
+            }
+        }
+        const double total = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+        choice.finished_round(total);
+        const std::string& best = choice.candidates()[choice.best()].name;
+        std::erase_if(made, [&](const auto& entry) { return entry.first != best; });  // their memory is better used elsewhere
+        if (last_failed) run(named(best));
+        backend = best;
+        reason = choice.reason();
+    }
+
+    void find(bool of_queries, const Run& run, NeighborList& list) {
+        const std::size_t n = points.size();
+        if (options.backend != "auto") return run_with(options.backend, "asked for", run);
+        if (n < brute_is_faster_below) return run_with("brute", "fewer than " + std::to_string(brute_is_faster_below) + " points", run);
+        if (n < worth_measuring_from) return run_with("cells", "fewer than " + std::to_string(worth_measuring_from) + " points, too few to measure", run);
+        const auto [at, is_new] = choices.try_emplace(of_queries, candidates(device));
+        neighbors::Choice& choice = at->second;
+        const neighbors::Facts now = facts(points, entries);
+        if (const auto due = choice.due(now); !due.empty()) {
+            measure(choice, due, now, run, list);
+        } else {
+            const std::string& best = choice.candidates()[choice.best()].name;
+            const auto start = std::chrono::steady_clock::now();
+            run_with(best, choice.candidates().size() > 1 ? choice.reason() : "the only one here for many points", run);
+            choice.searched(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+        }
+        entries = list.neighbors.size();
     }
 };
 
@@ -94,16 +144,21 @@ NeighborSearch::NeighborSearch(NeighborSearch&&) noexcept = default;
 NeighborSearch& NeighborSearch::operator=(NeighborSearch&&) noexcept = default;
 
 void NeighborSearch::find(const Points& points, NeighborList& list) {
-    pack(impl_->device, points, impl_->request(), "point", impl_->points);
-    impl_->choose(points.size).pairs(impl_->points, impl_->request(), list);
+    const neighbors::Request request = impl_->request();
+    order_streams(impl_->options.stream, nullptr);
+    pack(impl_->device, points, request, "point", impl_->points);
+    impl_->find(false, [&](neighbors::Backend& b) { b.pairs(impl_->points, request, list); }, list);
+    order_streams(nullptr, impl_->options.stream);
 }
 
 void NeighborSearch::find(const Points& queries, const Points& points, NeighborList& list) {
     neighbors::Request request = impl_->request();
     request.kind = ListKind::half;  // rows belong to the queries alone
+    order_streams(impl_->options.stream, nullptr);
     pack(impl_->device, points, request, "point", impl_->points);
     pack(impl_->device, queries, request, "query", impl_->queries);
-    impl_->choose(points.size).queries(impl_->queries, impl_->points, request, list);
+    impl_->find(true, [&](neighbors::Backend& b) { b.queries(impl_->queries, impl_->points, request, list); }, list);
+    order_streams(nullptr, impl_->options.stream);
 }
 
 const std::string& NeighborSearch::backend() const { return impl_->backend; }
@@ -115,15 +170,6 @@ std::size_t NeighborSearch::memory_bytes() const {
     std::size_t bytes = impl_->points.spheres.bytes() + impl_->points.ids.bytes();
     for (const auto& [name, backend] : impl_->made) bytes += backend->memory_bytes();
     return bytes;
-}
-
-std::vector<BackendInfo> search_backends(Device device) {
-    std::vector<BackendInfo> info;
-    for (const Row& row : registry) {
-        const bool built = factory(row, device), usable = built && (device == Device::cpu || cuda_available());
-        info.push_back({row.name, usable, usable ? "ready" : device == Device::cuda ? (built_with_cuda ? cuda_status() : "this build has no CUDA") : "not built"});
-    }
-    return info;
 }
 
 }  // namespace grainray

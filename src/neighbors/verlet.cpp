@@ -15,7 +15,7 @@
 namespace grainray::GRAINRAY_EXEC {
 namespace {
 
-/// Sums over the particles of one box: velocities in 1/16 units a step, their squares in 1024 units^2.
+/// Sums over the particles of one box: velocities in 1/16 units a step, their squares in 2^20 units^2.
 struct Sums {
     std::int64_t count, x, y, z, square;
 };
@@ -56,13 +56,9 @@ GR_HD inline float held(float v) { return v < fastest ? (v > -fastest ? v : -fas
 void sum_boxes(const Boxes& boxes, View<const neighbors::Sphere> spheres, View<const Body> body, float to_units) {
     for_each(spheres.size, [=] GR_HD(std::size_t i) {
         const Vec3f v{held(body[i].velocity.x * to_units), held(body[i].velocity.y * to_units), held(body[i].velocity.z * to_units)};
-        Sums& s = boxes.sums[boxes.of(spheres[i])];
         const auto fixed = [](float f) { return static_cast<std::int64_t>(f); };
-        atomic_add(&s.count, std::int64_t{1});
-        atomic_add(&s.x, fixed(v.x * 16));
-        atomic_add(&s.y, fixed(v.y * 16));
-        atomic_add(&s.z, fixed(v.z * 16));
-        atomic_add(&s.square, fixed(dot(v, v) * (1.0f / 1024)));
+        Sums& s = boxes.sums[boxes.of(spheres[i])];
+        atomic_add_together(&s.count, std::array<std::int64_t, 5>{1, fixed(v.x * 16), fixed(v.y * 16), fixed(v.z * 16), fixed(dot(v, v) * 0x1p-20f)});
     });
 }
 
@@ -78,7 +74,7 @@ void look_around(const Boxes& boxes) {
             square += static_cast<double>(s.square);
         });
         if (n == 0) return;
-        const double vx = x / n / 16, vy = y / n / 16, vz = z / n / 16, variance = square / n * 1024 - (vx * vx + vy * vy + vz * vz);
+        const double vx = x / n / 16, vy = y / n / 16, vz = z / n / 16, variance = square / n * 0x1p20 - (vx * vx + vy * vy + vz * vz);
         boxes.around[c] = {{static_cast<float>(vx), static_cast<float>(vy), static_cast<float>(vz)}, sqrtf(static_cast<float>(variance > 0 ? variance : 0)), 0, 0};
     });
     for_each(boxes.sums.size, [=] GR_HD(std::size_t c) {
@@ -109,15 +105,16 @@ struct JoinExtremes {
     }
 };
 
-/// Steps the list may last at most, by the bounds at the head of this file. `radius`: the largest, units.
-float longest_life(const Boxes& boxes, float wanted, float radius) {
+/// Steps the list may last at most, by the bounds at the head of this file. `radius`: the largest, units; `blur`: what the
+/// faces of the boxes may be off by rounding, radii.
+float longest_life(const Boxes& boxes, float wanted, float radius, float blur) {
     const Extremes none{0, 0, {fastest, fastest, fastest}, {-fastest, -fastest, -fastest}};
     const Extremes e = reduce(boxes.sums.size, none, [=] GR_HD(std::size_t c) {
         const Surroundings& a = boxes.around[c];
         return boxes.sums[c].count ? Extremes{a.shear, a.beyond, a.frame, a.frame} : none;
     }, JoinExtremes{});
     const float spread = boxes.sums.size ? length(e.fastest - e.slowest) : 0, least = 1e-30f;
-    const float bound = fminf(radius / (e.shear + least), fminf(4 * radius / (e.beyond + least), 12 * radius / (spread + least)));
+    const float bound = fminf(radius / (e.shear + least), fminf((4 - blur) * radius / (e.beyond + least), (12 - blur) * radius / (spread + least)));
     return fmaxf(1.0f, floorf(fminf(wanted, bound)));
 }
 
@@ -158,10 +155,11 @@ void margins(State& s, const StepConstants& constants, const MarginRule& rule, A
     sum_boxes(boxes, spheres, body, to_units);
     look_around(boxes);
 
-    const float steps = longest_life(boxes, rule.interval, rule.most_units);
-    s.age.limit = static_cast<std::uint32_t>(steps);
     const float longest = fmaxf(fmaxf(fmaxf(fabsf(s.lower.x), fabsf(s.upper.x)), fmaxf(fabsf(s.lower.y), fabsf(s.upper.y))),
                                 fmaxf(fmaxf(fabsf(s.lower.z), fabsf(s.upper.z)), fmaxf(period.x, fmaxf(period.y, period.z))));
+
+    const float steps = longest_life(boxes, rule.interval, rule.most_units, fminf(longest / largest * 5e-7f, 3.9f));
+    s.age.limit = static_cast<std::uint32_t>(steps);
 
     const auto near = s.particles.near.view(), built = s.built.view();
     const auto frame = s.frame.view();

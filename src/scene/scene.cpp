@@ -128,7 +128,8 @@ Scene read_scene(const Node& root, const std::filesystem::path& file) {
     read_simulation(root, s);
     read_domain(root, s);
     read_table(root.child("contact"), schema().contact, s.contact);
-    read_table(root.child("search"), schema().search, s.search);
+    read_table(root.child("search"), schema().search, s.search, {"rays"});
+    read_table(root.child("search").child("rays"), schema().rays, s.search.rays);
     read_table(root.child("output"), schema().output, s.output);
     read_table(root.child("limits"), schema().limits, s.limits);
     read_render(root, s);

@@ -38,6 +38,9 @@ void add_run_tables(Schema& s) {
         field(&SearchSettings::skin, {.key = "skin", .text = "least margin as a fraction of the radius; 0: chosen by the program", .range = non_negative, .typical = "0.1"}),
         field(&SearchSettings::interval, {.key = "interval", .text = "steps a margin is sized for; 0: chosen by the program", .range = non_negative, .typical = "20"}),
         field(&SearchSettings::trigger, {.key = "trigger", .text = "when neighbours are found anew: safe misses no contact; published can, and is there to compare with", .choices = {"safe", "published"}})}};
+    s.rays = {"search.rays", "Search by ray tracing: Embree on the CPU, OptiX on NVIDIA GPUs.", {
+        field(&RaySettings::variant, {.key = "variant", .text = "published is the algorithm as it was published, to compare with: boxes of the largest reach; it finds the same neighbours",
+            .choices = {"default", "published"}})}};
 }
 
 void add_output_tables(Schema& s) {

@@ -52,6 +52,7 @@ struct Schema {
     Section<DomainRow> domain;
     Section<ContactSettings> contact;
     Section<SearchSettings> search;
+    Section<RaySettings> rays;
     Section<OutputSettings> output;
     Section<Limits> limits;
     Section<RenderSettings> render;
@@ -78,7 +79,7 @@ struct Schema {
     /// Calls visit(section) in the order of the docs.
     template <class Visit>
     void each(Visit&& visit) const {
-        visit(top), visit(simulation), visit(domain), visit(contact), visit(search), visit(output), visit(limits);
+        visit(top), visit(simulation), visit(domain), visit(contact), visit(search), visit(rays), visit(output), visit(limits);
         visit(render), visit(camera), visit(material), visit(pair), visit(placement), visit(group), visit(lattice);
         visit(list), visit(file), visit(fill), visit(release), visit(size);
         for (const auto& law : size_laws) visit(law);

@@ -1,10 +1,11 @@
 // grainray check: what it reports and what it refuses; `run` refuses the same.
+#include "folders.hpp"
 #include "process.hpp"
 
 namespace grainray::cli_test {
 namespace {
 
-const std::string examples = GRAINRAY_EXAMPLES;
+const std::string examples = test::project_folder() / "examples";
 
 /// As `says` with words on stdout.
 void expect_words(const Result& r, const std::vector<std::string>& words) {

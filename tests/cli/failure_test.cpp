@@ -1,4 +1,6 @@
 // Runs that cannot go on: exit status 1, a sentence, and the last good checkpoint left as it was.
+#include <algorithm>
+
 #include "grainray/output.hpp"
 #include "process.hpp"
 
@@ -61,6 +63,29 @@ TEST(Failure, FileSizeLimitStandsForAFullDisk) {
     const Result again = folder.grainray({"run", "out/scene.toml", "--restart", "out/checkpoint.h5", "--out", "out", "--steps", "10"});
     EXPECT_EQ(again.status, 0) << again.err;
     EXPECT_EQ(folder.summary("out")["step"], checkpoint.step + 10);
+}
+
+/// A frame in the middle of the run meets a full disk while later states are computed already.
+TEST(Failure, FullDiskInTheMiddleOfARun) {
+    if (!fs::exists("/dev/full")) GTEST_SKIP() << "no /dev/full here";
+    const Folder folder;
+    folder.write("pair.toml", two_spheres());
+    ASSERT_EQ(folder.grainray({"run", "pair.toml", "--out", "out", "--quiet"}).status, 0);
+    fs::create_symlink("/dev/full", folder / "out/frames/000003.vtp.tmp");
+    const Result r = folder.grainray({"run", "pair.toml", "--out", "out", "--quiet", "--force"});
+    EXPECT_EQ(r.status, 1) << r.err;
+    for (const char* word : {"cannot write out/frames/000003.vtp: the disk is full", "last good checkpoint is out/checkpoint.h5 (step 80,"})
+        EXPECT_NE(r.err.find(word), std::string::npos) << "no '" << word << "' in " << r.err;
+    EXPECT_EQ(read_checkpoint(folder / "out/checkpoint.h5").step, 80u);
+    EXPECT_TRUE(fs::exists(folder / "out/frames/000002.vtp"));
+    EXPECT_FALSE(fs::exists(folder / "out/frames/000004.vtp"));  // nothing is written after what failed
+    const std::string history = folder.read("out/history.csv");
+    EXPECT_EQ(std::count(history.begin(), history.end(), '\n'), 1 + 12) << history;  // steps 0, 10 ... 110
+    EXPECT_EQ(folder.summary("out")["status"], "failed");
+
+    const Result again = folder.grainray({"run", "out/scene.toml", "--restart", "out/checkpoint.h5", "--out", "out"});
+    EXPECT_EQ(again.status, 0) << again.err;
+    EXPECT_EQ(folder.summary("out")["step"], 200);
 }
 
 TEST(Failure, NoRoomForTheFirstFrame) {

@@ -11,6 +11,8 @@
 #include <iterator>
 #include <thread>
 
+#include "folders.hpp"
+
 namespace grainray::cli_test {
 
 Folder::Folder() {
@@ -36,7 +38,7 @@ std::string Folder::read(const fs::path& name) const {
 }
 
 pid_t Folder::start(const Arguments& arguments, std::size_t file_size_limit) const {
-    std::vector<std::string> words{GRAINRAY_COMMAND};
+    std::vector<std::string> words{test::program_folder() / "grainray"};
     words.insert(words.end(), arguments.begin(), arguments.end());
     std::vector<char*> argv;
     for (std::string& word : words) argv.push_back(word.data());

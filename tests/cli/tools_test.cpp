@@ -4,6 +4,7 @@
 #include <cstdlib>
 
 #include "grainray/output.hpp"
+#include "folders.hpp"
 #include "process.hpp"
 
 namespace grainray::cli_test {
@@ -13,7 +14,7 @@ TEST(Info, NamesDevicesAndBackEnds) {
     const Folder folder;
     const Result r = folder.grainray({"info"});
     ASSERT_EQ(r.status, 0) << r.err;
-    for (const char* word : {"device cpu", "threads", "device cuda", "search brute", "search cells", "search rays", "not built yet", "RT cores", "oneTBB"})
+    for (const char* word : {"device cpu", "threads", "device cuda", "search brute", "search cells", "search rays", "Embree", "oneTBB"})
         EXPECT_NE(r.out.find(word), std::string::npos) << "no '" << word << "' in\n" << r.out;
     EXPECT_NE(folder.grainray({"info", "--schema"}).out.find("normal_stiffness"), std::string::npos);
 }
@@ -22,7 +23,7 @@ TEST(Output, ThatIsLostIsAFailure) {
     const Folder folder;
     folder.write("pair.toml", two_spheres());
     for (const std::string words : {"info", "info --schema", "check pair.toml", "--help"}) {
-        const std::string command = "cd " + (folder / "").string() + " && " + GRAINRAY_COMMAND + ' ' + words + " > /dev/full 2> err.txt";
+        const std::string command = "cd " + (folder / "").string() + " && " + (test::program_folder() / "grainray").string() + ' ' + words + " > /dev/full 2> err.txt";
         EXPECT_EQ(WEXITSTATUS(std::system(command.c_str())), 1) << words;
         EXPECT_TRUE(folder.read("err.txt").starts_with("grainray: ")) << words;
     }
@@ -75,17 +76,23 @@ TEST(Bench, StepsFromAFileOfPositions) {
     EXPECT_EQ(nlohmann::json::parse(folder.read("a.json"))["particles"], 3);
 }
 
-TEST(Bench, BackEndsFindTheSameNumberOfNeighbours) {
+TEST(Bench, BackEndsFindTheSameNumberOfNeighboursInEveryCloud) {
     const Folder folder;
-    const Result r = folder.grainray({"bench", "neighbors", "--points", "500,1000", "--backend", "all", "--kind", "full", "--device", "cpu", "--json", "n.json"});
+    const Result r = folder.grainray({"bench", "neighbors", "--points", "1000,2000", "--cloud", "all", "--ratio", "1,16", "--backend", "all", "--kind", "full",
+                                      "--seconds", "0.01", "--device", "cpu", "--machine", "mine", "--json", "n.json"});
     ASSERT_EQ(r.status, 0) << r.err;
-    const auto results = nlohmann::json::parse(folder.read("n.json"))["results"];
-    ASSERT_EQ(results.size() % 4, 0u);
-    const std::size_t backends = results.size() / 4;
+    const auto json = nlohmann::json::parse(folder.read("n.json"));
+    EXPECT_EQ(json["machine"]["name"], "mine");
+    const auto& results = json["results"];
+    const std::size_t backends = json["machine"]["backends"].size();
+    ASSERT_EQ(results.size(), 2 * (4 + 2 * 2) * backends);  // two sizes; four clouds of one reach, two of two ratios
     for (std::size_t i = 0; i < results.size(); ++i) {
-        EXPECT_EQ(results[i]["list_entries"], results[i / backends * backends]["list_entries"]);
-        EXPECT_GT(results[i]["mean_neighbors"].get<double>(), 5);
-        EXPECT_GT(results[i]["neighbors_per_second"].get<double>(), 0);
+        const auto &row = results[i], &first = results[i / backends * backends];
+        for (const char* key : {"cloud", "ratio", "points", "list_entries"}) EXPECT_EQ(row[key], first[key]) << row;
+        EXPECT_GT(row["neighbors_per_point"].get<double>(), 4) << row;
+        EXPECT_LT(row["neighbors_per_point"].get<double>(), 14) << row;
+        EXPECT_GE(row["milliseconds"], row["milliseconds_min"]) << row;
+        EXPECT_GT(row["milliseconds_build"].get<double>(), 0) << row;
     }
 }
 

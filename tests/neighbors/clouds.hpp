@@ -89,6 +89,22 @@ inline std::vector<Cloud> adversarial_clouds() {
     }
     all.push_back(clusters);
 
+    Cloud heap{"all_at_one_point", {}, {}, {}, {}, {}, {}};
+    for (int i = 0; i < 90; ++i) heap.add(-7, 0.1f, 1e4f, 1e-3f);
+    all.push_back(heap);
+    Cloud far_wild = random_cloud("reach_1e-3_to_1e3_at_1e6", 400, -1e3f, 1e3f, 0, 30, {1e6f, -1e6f, 1e6f});
+    for (std::size_t i = 0; i < far_wild.size(); ++i) far_wild.reach[i] = std::pow(10.0f, -3.0f + 6.0f * static_cast<float>(i * 7 % 400) / 400);
+    all.push_back(far_wild);
+    all.push_back(lattice_cloud("on_the_faces_of_the_boxes", 9, 0.1f, 0.1f, {0.1f, -0.3f, 1000.0f}));
+    Cloud lognormal = random_cloud("lognormal", 1200, 0, 10, 0, 31);
+    std::mt19937 e(32);
+    std::normal_distribution<float> normal(-1.5f, 0.7f);
+    for (float& r : lognormal.reach) r = std::exp(normal(e));
+    all.push_back(lognormal);
+    all.push_back(random_cloud("squares_underflow", 300, -1e-22f, 1e-22f, 2e-23f, 33));
+    all.push_back(random_cloud("squares_overflow", 150, -5e18f, 5e18f, 3e19f, 34));
+    all.push_back(random_cloud("coordinates_past_1e18", 300, -4e18f, 4e18f, 4e17f, 35));
+
     const auto periodic = [&](Cloud c, Vec3f lower, Vec3f period) {
         c.lower = lower;
         c.period = period;
@@ -99,6 +115,10 @@ inline std::vector<Cloud> adversarial_clouds() {
     periodic(random_cloud("periodic_barely_larger_than_the_reach", 60, 0, 1, 0.49f, 12), {}, {1, 1, 1});
     periodic(random_cloud("periodic_smaller_than_the_reach", 40, 0, 1, 0.8f, 13), {}, {1, 1, 1});
     periodic(random_cloud("periodic_points_outside_the_box", 500, -3, 3, 0.08f, 14), {0, 0, 0}, {1, 0, 1.5f});
+    Cloud boulders = random_cloud("periodic_boulders", 500, 0, 1, 0.02f, 36);
+    for (std::size_t i = 0; i < 500; i += 125) boulders.reach[i] = 0.3f;
+    periodic(boulders, {0, 0, 0}, {1, 1, 1});
+    periodic(random_cloud("periodic_box_at_1e6", 600, 0, 40, 2.0f, 37, {1e6f, -1e6f, 3e5f}), {1e6f, -1e6f, 3e5f}, {40, 40, 40});
     periodic(lattice_cloud("periodic_lattice_on_the_radius", 8, 0.125f, 0.0625f), {}, {1, 1, 1});
     return all;
 }

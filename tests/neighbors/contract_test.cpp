@@ -64,7 +64,7 @@ TEST(Contract, BadPointsAreNamed) {
 TEST(Contract, UnknownBackendNamesTheKnownOnes) {
     const std::string message = refusal(random_cloud("", 5, 0, 1, 0.1f, 1), {"cell", ListKind::full, 1, true, {}, {}});
     EXPECT_NE(message.find("'cell'"), std::string::npos);
-    EXPECT_NE(message.find("auto, brute, cells"), std::string::npos) << message;
+    EXPECT_NE(message.find("auto, brute, cells, rays, rays-published"), std::string::npos) << message;
 }
 
 TEST(Contract, BadBoxesAndBlocksAreRefused) {
@@ -79,6 +79,23 @@ TEST(Contract, RowsHaveNoCap) {
     NeighborList list;
     search.find(DeviceCloud(Device::cpu, c).points(), list);
     EXPECT_EQ(list.neighbors.size(), 3000u * 2999u);
+}
+
+TEST(Contract, AutoMeasuresOnThePointsAndSaysSo) {
+    const Cloud c = random_cloud("", 6000, 0, 1, 0.04f, 1);
+    for (const Device device : {Device::cpu, Device::cuda}) {
+        if (device == Device::cuda && !cuda_available()) continue;
+        const DeviceCloud on_device(device, c);
+        NeighborSearch chosen(device), cells(device, {"cells", ListKind::full, 1, true, {}, {}});
+        NeighborList list(device), expected(device);
+        cells.find(on_device.points(), expected);
+        for (int call = 0; call < 3; ++call) {
+            chosen.find(on_device.points(), list);
+            EXPECT_EQ(rows_of(list), rows_of(expected));
+            EXPECT_NE(chosen.reason().find("ms a search against"), std::string::npos) << chosen.reason();
+        }
+        EXPECT_TRUE(chosen.backend() == "cells" || chosen.backend() == "rays") << chosen.backend();
+    }
 }
 
 TEST(Contract, AFarOutlierCostsNoMemory) {

@@ -3,12 +3,13 @@
 #include <filesystem>
 #include <fstream>
 
+#include "folders.hpp"
 #include "scene_text.hpp"
 
 namespace grainray::test {
 namespace {
 
-const std::filesystem::path folder = GRAINRAY_SOURCE_DIR "/examples";
+const std::filesystem::path folder = project_folder() / "examples";
 
 std::vector<std::string> example_names() {
     std::vector<std::string> names;

@@ -4,6 +4,7 @@
 #include <iterator>
 #include <numbers>
 
+#include "folders.hpp"
 #include "scene_text.hpp"
 
 namespace grainray::test {
@@ -31,7 +32,7 @@ TEST(Parse, EveryTableReachesItsStruct) {
 simulation = { method = "dem", dt = "0.5 ms", duration = 2, gravity = [0, "-981 cm/s^2", 0], seed = 7 }
 domain = { lower = [0, 0, 0], upper = [1, "2 m", 3], periodic = [true, false, true] }
 contact = { law = "linear", mixing = "series", mass_damping = 0.1 }
-search = { backend = "cells", skin = 0.2, interval = 30, trigger = "published" }
+search = { backend = "rays", skin = 0.2, interval = 30, trigger = "published", rays = { variant = "published" } }
 output = { frames = 0.1, history = "10 ms", checkpoints = 1, format = "csv", fields = ["velocity", "id"] }
 limits = { overlap = 0.5, speed = "36 km/h" }
 [render]
@@ -55,7 +56,8 @@ field_of_view = "0.5 rad"
     EXPECT_EQ(s.domain.periodic, (std::array{true, false, true}));
     EXPECT_EQ(s.contact.mixing, Mixing::series);
     EXPECT_EQ(s.contact.mass_damping, 0.1);
-    EXPECT_EQ(s.search.backend, "cells");
+    EXPECT_EQ(s.search.backend, "rays");
+    EXPECT_EQ(s.search.rays.variant, "published");
     EXPECT_EQ(s.search.trigger, Trigger::published);
     EXPECT_EQ(s.search.skin, 0.2);
     EXPECT_EQ(s.search.interval, 30);
@@ -204,7 +206,7 @@ TEST(ContactParameters, APairRowReplacesOnlyWhatItGives) {
 
 /// docs/scene.md holds schema_text() between two marks; GRAINRAY_UPDATE_DOCS=1 writes it there.
 TEST(Schema, DocsHoldTheFieldTable) {
-    const std::string path = GRAINRAY_SOURCE_DIR "/docs/scene.md", begin = "<!-- fields -->\n",
+    const std::string path = project_folder() / "docs/scene.md", begin = "<!-- fields -->\n",
                       end = "<!-- end of fields -->";
     std::ifstream in(path);
     std::string page{std::istreambuf_iterator<char>(in), {}};

@@ -1,5 +1,6 @@
 // One trajectory, to the last bit: any back end, number of threads, list settings, device, and from run to run.
 #include "devices.hpp"
+#include "grainray/neighbors.hpp"
 #include "scenes.hpp"
 
 namespace grainray::test {
@@ -22,8 +23,21 @@ TEST_P(SameHash, Golden) {
 TEST_P(SameHash, WhateverTheBackend) {
     const Case c = column(9, 7, 12, 3);
     const auto cells = hash_after(c, 250, GetParam(), "cells");
-    EXPECT_EQ(hash_after(c, 250, GetParam(), "brute"), cells);
     EXPECT_EQ(hash_after(c, 250, GetParam(), "auto"), cells);
+    for (const BackendInfo& b : search_backends(GetParam()))
+        if (b.available) EXPECT_EQ(hash_after(c, 250, GetParam(), b.name), cells) << b.name;
+    const Case measured = column(20, 18, 20);  // so many that auto measures
+    EXPECT_EQ(hash_after(measured, 60, GetParam(), "auto"), hash_after(measured, 60, GetParam(), "cells"));
+}
+
+TEST_P(SameHash, TheVariantOfTheSceneIsTaken) {
+    Case c = column(6, 5, 6);
+    c.scene.search.backend = "rays";
+    c.scene.search.rays.variant = "published";
+    for (const BackendInfo& b : search_backends(GetParam()))
+        if (b.name == "rays" && !b.available) GTEST_SKIP() << b.reason;
+    EXPECT_EQ(c.start(GetParam(), "auto").search().backend, "rays-published");
+    EXPECT_EQ(hash_after(c, 100, GetParam(), "auto"), hash_after(c, 100, GetParam(), "cells"));
 }
 
 TEST_P(SameHash, WhateverTheMarginsAndTheInterval) {

@@ -14,10 +14,39 @@ struct Sorted {
 
     template <class Test, class Emit>
     GR_HD void find(const neighbors::Sphere& s, float half_width, const Test& test, const Emit& emit) const {
+        if constexpr (device == Device::cuda) return find_flat(s, half_width, test, emit);
         grid.for_each_run(s, half_width, [&](std::uint32_t first, std::uint32_t last) {
-            for (std::uint32_t p = starts[first], end = starts[last]; p < end; ++p)
-                emit(order[p], test(p));
+            for (std::uint32_t p = starts[first], end = starts[last]; p < end; ++p) emit(order[p], test(p));
         });
+    }
+
+    /// The same with one loop over the points of up to 16 runs: the lanes of a warp wait for the one with most points, not
+    /// for the longest of each run.
+    template <class Test, class Emit>
+    GR_HD void find_flat(const neighbors::Sphere& s, float half_width, const Test& test, const Emit& emit) const {
+        constexpr int most = 16;
+        std::uint32_t begin[most], end[most];
+        int runs = 0;
+        const auto visit = [&] {
+            for (int r = 0; r < runs;) {
+                std::uint32_t p = begin[r], stop = end[r];
+                for (;;) {
+                    emit(order[p], test(p));
+                    if (++p < stop) continue;
+                    if (++r == runs) break;
+                    p = begin[r];
+                    stop = end[r];
+                }
+            }
+            runs = 0;
+        };
+        grid.for_each_run(s, half_width, [&](std::uint32_t first, std::uint32_t last) {
+            begin[runs] = starts[first];
+            end[runs] = starts[last];
+            runs += begin[runs] < end[runs];
+            if (runs == most) visit();
+        });
+        visit();
     }
 };
 
@@ -30,17 +59,21 @@ GR_HD inline bool near(const neighbors::Sphere& a, const neighbors::Sphere& b, c
 template <bool periodic>
 struct CellPairs {
     Sorted sorted;
-    View<const std::uint32_t> ids;  ///< by place
+    View<const std::uint32_t> sorted_ids;
+    View<const neighbors::Sphere> spheres;  ///< the points in the order in which they are looked at
+    View<const std::uint32_t> ids, indices; ///< no indices: the points' own order
     Vec3f period;
 
-    GR_HD std::uint32_t index(std::size_t k) const { return sorted.order[k]; }
+    GR_HD std::uint32_t index(std::size_t k) const { return indices.size ? indices[k] : static_cast<std::uint32_t>(k); }
     template <class Emit>
     GR_HD void find(std::size_t k, const Emit& emit) const {
-        const neighbors::Sphere a = sorted.spheres[k];
+        const neighbors::Sphere a = spheres[k];
         const std::uint32_t id = ids[k];
-        sorted.find(a, 2 * a.reach, [&](std::uint32_t p) {
+        sorted.find(a, 2 * a.reach, [&](std::uint32_t p) -> bool {
             const neighbors::Sphere& b = sorted.spheres[p];
-            return near<periodic>(a, b, period) & neighbors::owns(a, id, b, ids[p]);
+            const bool hit = near<periodic>(a, b, period);
+            if constexpr (device == Device::cuda) return hit && neighbors::owns(a, id, b, sorted_ids[p]);
+            return hit & neighbors::owns(a, id, b, sorted_ids[p]);  // no branch: the CPU cannot guess its side
         }, emit);
     }
 };
@@ -64,8 +97,8 @@ class Cells final : public neighbors::Backend {
 public:
     void pairs(const neighbors::Packed& points, const neighbors::Request& r, NeighborList& list) override {
         const Sorted sorted = sort(points, r);
-        if (r.periodic()) build_list(CellPairs<true>{sorted, ids_.view(), r.period}, points.size(), points.size(), r, list);
-        else build_list(CellPairs<false>{sorted, ids_.view(), r.period}, points.size(), points.size(), r, list);
+        if (r.periodic()) build<true>(sorted, points, r, list);
+        else build<false>(sorted, points, r, list);
     }
     void queries(const neighbors::Packed& q, const neighbors::Packed& points, const neighbors::Request& r, NeighborList& list) override {
         const Sorted sorted = sort(points, r);
@@ -74,52 +107,46 @@ public:
         else build_list(CellQueries<false>{sorted, queries, r.period, points.max_reach}, q.size(), q.size(), r, list);
     }
     std::size_t memory_bytes() const override {
-        return keys_.bytes() * 2 + order_.bytes() * 2 + ids_.bytes() + spheres_.bytes() + starts_.bytes();
+        return ranks_.bytes() + order_.bytes() + ids_.bytes() + spheres_.bytes() + starts_.bytes();
     }
 
     Sorted sort(const neighbors::Packed& points, const neighbors::Request& r);
 
 private:
-    Array<std::uint32_t> keys_{device}, keys2_{device}, order_{device}, order2_{device}, ids_{device}, starts_{device};
+    template <bool periodic>
+    void build(const Sorted& sorted, const neighbors::Packed& points, const neighbors::Request& r, NeighborList& list) {
+        const auto finder = r.local_order
+                                ? CellPairs<periodic>{sorted, ids_.view(), points.spheres.view(), points.ids.view(), {}, r.period}
+                                : CellPairs<periodic>{sorted, ids_.view(), spheres_.view(), ids_.view(), order_.view(), r.period};
+        build_list(finder, points.size(), points.size(), r, list);
+    }
+
+    Array<std::uint32_t> ranks_{device}, order_{device}, ids_{device}, starts_{device};
     Array<neighbors::Sphere> spheres_{device};
 };
 
+/// A counting sort: how many lie in each bucket, where each bucket starts, and each point to its place.
 Sorted Cells::sort(const neighbors::Packed& points, const neighbors::Request& r) {
     const std::size_t n = points.size();
     const neighbors::Grid grid = neighbors::make_grid(n, points.mean_reach, points.lower, points.upper, r.lower, r.period);
-    const std::uint32_t buckets = grid.buckets();
-    keys_.resize_discard(n);
+    ranks_.resize_discard(n);
     order_.resize_discard(n);
-    const auto in = points.spheres.view();
-    {
-        const auto keys = keys_.view();
-        const auto order = order_.view();
-        for_each(n, [=] GR_HD(std::size_t i) {
-            keys[i] = grid.bucket(in[i]);
-            order[i] = static_cast<std::uint32_t>(i);
-        });
-    }
-    int bits = 1;
-    while (bits < 32 && (buckets - 1) >> bits) ++bits;
-    sort_by_key(keys_, order_, keys2_, order2_, bits);
-
     spheres_.resize_discard(n);
     ids_.resize_discard(n);
-    starts_.resize_discard_slack(buckets + 1);
-    const auto keys = keys_.view();
-    const auto order = order_.view();
-    const auto spheres = spheres_.view();
-    const auto ids = ids_.view(), starts = starts_.view();
+    starts_.resize_discard_slack(grid.buckets() + 1);
+    starts_.clear_bytes();
+    const auto in = points.spheres.view();
     const auto in_ids = points.ids.view();
-    for_each(n, [=] GR_HD(std::size_t p) {
-        spheres[p] = in[order[p]];
-        ids[p] = in_ids[order[p]];
-        // This place opens its own bucket and every empty one before it; the last place closes the table.
-        for (std::uint32_t b = p == 0 ? 0 : keys[p - 1] + 1; b <= keys[p]; ++b) starts[b] = static_cast<std::uint32_t>(p);
-        if (p + 1 == n)
-            for (std::uint32_t b = keys[p] + 1; b <= buckets; ++b) starts[b] = static_cast<std::uint32_t>(n);
+    const auto spheres = spheres_.view();
+    const auto ranks = ranks_.view(), order = order_.view(), ids = ids_.view(), starts = starts_.view();
+    for_each(n, [=] GR_HD(std::size_t i) { ranks[i] = atomic_add(&starts[grid.bucket(in[i])], 1u); });
+    exclusive_scan(starts);
+    for_each(n, [=] GR_HD(std::size_t i) {
+        const std::uint32_t p = starts[grid.bucket(in[i])] + ranks[i];
+        spheres[p] = in[i];
+        ids[p] = in_ids[i];
+        order[p] = static_cast<std::uint32_t>(i);
     });
-    if (n == 0) starts_.clear_bytes();
     return {grid, spheres, order, starts};
 }
 

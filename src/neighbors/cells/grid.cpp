@@ -2,14 +2,21 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 namespace grainray::neighbors {
 namespace {
 
-std::int32_t power_of_two_at_least(double n) {
-    std::int32_t p = 1;
-    while (p < n && p < (1 << 24)) p *= 2;
-    return p;
+/// The largest cap on the cells of an axis with which all together fit the budget: the longest axes wrap around.
+double cap(const std::array<double, 3>& cells, double budget) {
+    double low = 1, high = std::max({cells[0], cells[1], cells[2]});
+    while (high - low >= 1) {
+        const double middle = std::ceil(0.5 * (low + high));
+        const double all = std::min(cells[0], middle) * std::min(cells[1], middle) * std::min(cells[2], middle);
+        if (all <= budget) low = middle;
+        else high = middle - 1;
+    }
+    return low;
 }
 
 }  // namespace
@@ -22,20 +29,19 @@ Grid make_grid(std::size_t points, float mean_reach, const Vec3f& lower, const V
         largest = std::max(largest, extent[a]);
     }
     // A hair more than 2 reaches, so that 3 cells always cover a query; never so narrow that a cell index loses meaning.
-    const double width = std::max({2.0 * mean_reach * 1.00001, largest * 1e-9, 1e-30});
+    const double width = std::max({2.0 * mean_reach * 1.00001, largest * 4e-9, 1e-30});
     for (int a = 0; a < 3; ++a)
-        cells[a] = period[a] > 0 ? std::max(1.0, std::floor(extent[a] / width)) : power_of_two_at_least(extent[a] / width + 1);
+        cells[a] = period[a] > 0 ? std::max(1.0, std::floor(extent[a] / width)) : std::floor(extent[a] / width) + 2;
 
     const double budget = std::max(64.0, 2.0 * static_cast<double>(points));
-    while (cells[0] * cells[1] * cells[2] > budget) {
-        auto& most = *std::max_element(cells.begin(), cells.end());
-        if (most <= 1) break;
-        most = std::floor(most / 2);
-    }
+    const double most = cap(cells, budget);
+    for (double& c : cells) c = std::min(c, most);
     const auto axis = [&](int a) {
         const bool periodic = period[a] > 0;
-        return GridAxis{periodic ? static_cast<double>(box_lower[a]) : static_cast<double>(lower[a]),
-                        periodic ? cells[a] / extent[a] : 1.0 / width, static_cast<std::int32_t>(cells[a]), periodic};
+        return GridAxis{periodic ? box_lower[a] : lower[a], static_cast<float>(periodic ? cells[a] / extent[a] : 1.0 / width),
+                        static_cast<std::int32_t>(cells[a]), static_cast<float>(1 / cells[a]), periodic, periodic ? 1e-6f * period[a] : 0.0f,
+                        static_cast<float>(periodic ? extent[a] / cells[a] : width),
+                        1e-6f * static_cast<float>(extent[a] + std::max(std::fabs(static_cast<double>(lower[a])), std::fabs(static_cast<double>(upper[a]))))};
     };
     return {axis(0), axis(1), axis(2)};
 }

@@ -1,0 +1,57 @@
+# The CUDA architectures to build for, unless CMAKE_CUDA_ARCHITECTURES is given. Each costs several seconds a source.
+
+# What this nvcc knows from 75 to 120, oldest first.
+function(grainray_known_architectures result)
+  execute_process(COMMAND ${CMAKE_CUDA_COMPILER} --list-gpu-arch OUTPUT_VARIABLE listed COMMAND_ERROR_IS_FATAL ANY)
+  string(REGEX MATCHALL "[0-9]+" listed "${listed}")
+  list(SORT listed COMPARE NATURAL)
+  set(boards 87 88 101 110)  # Jetson and its like, which no x86-64 machine has
+  set(known "")
+  foreach(number ${listed})
+    if(number GREATER_EQUAL 75 AND number LESS_EQUAL 120 AND NOT (CMAKE_SYSTEM_PROCESSOR STREQUAL x86_64 AND number IN_LIST boards))
+      list(APPEND known ${number})
+    endif()
+  endforeach()
+  set(${result} ${known} PARENT_SCOPE)
+endfunction()
+
+# Those of the GPUs in this machine; empty where there is none.
+function(grainray_present_architectures result)
+  set(output "")
+  find_program(NVIDIA_SMI nvidia-smi)
+  mark_as_advanced(NVIDIA_SMI)
+  if(NVIDIA_SMI)
+    execute_process(COMMAND ${NVIDIA_SMI} --query-gpu=compute_cap --format=csv,noheader OUTPUT_VARIABLE output ERROR_QUIET)
+  endif()
+  string(REGEX MATCHALL "[0-9]+\\.[0-9]" present "${output}")
+  list(TRANSFORM present REPLACE "\\." "")
+  set(${result} ${present} PARENT_SCOPE)
+endfunction()
+
+# A package: all that are known, and PTX of the newest for what comes later. Else the GPUs of this machine, and where it
+# has none the oldest, whose PTX the driver of any GPU translates at the first start.
+function(grainray_choose_architectures result)
+  grainray_known_architectures(known)
+  grainray_present_architectures(present)
+  list(GET known 0 oldest)
+  list(GET known -1 newest)
+  set(chosen "")
+  if(GRAINRAY_PACKAGE)
+    list(TRANSFORM known APPEND -real OUTPUT_VARIABLE chosen)
+    list(APPEND chosen ${newest}-virtual)
+  else()
+    foreach(number ${present})
+      if(number IN_LIST known)
+        list(APPEND chosen ${number}-real)
+      else()  # newer than this nvcc
+        list(APPEND chosen ${newest}-virtual)
+      endif()
+    endforeach()
+    list(REMOVE_DUPLICATES chosen)
+  endif()
+  if(NOT chosen)
+    set(chosen ${oldest})
+  endif()
+  message(STATUS "grainray: CUDA architectures ${chosen}")
+  set(${result} ${chosen} PARENT_SCOPE)
+endfunction()

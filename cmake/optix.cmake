@@ -1,0 +1,62 @@
+# OptiX headers for the search by rays on NVIDIA GPUs: OptiX_ROOT (variable or environment), else fetched. The library itself
+# is part of the driver and is loaded at run time. Nothing here may stop or delay a build that can do without.
+set(GRAINRAY_OPTIX AUTO CACHE STRING "Search by OptiX: AUTO (where CUDA and the headers are found), ON (they must be there) or OFF")
+set_property(CACHE GRAINRAY_OPTIX PROPERTY STRINGS AUTO ON OFF)
+set(GRAINRAY_HAS_OPTIX OFF)
+
+# Drivers keep older interfaces, so old headers make a build that runs on more machines. 8.0 needs driver 535 (2023).
+set(GRAINRAY_OPTIX_FETCHED 8.0.0)
+set(GRAINRAY_OPTIX_SHA256 db5a25ecd4b8b5cbbf34311d895d0c4856fd48242ee4f2109e6aa4d8720f390d)
+
+# What was fetched is used only if it is what it should be.
+function(grainray_optix_hash folder result)
+  set(all "")
+  foreach(name optix.h optix_device.h optix_function_table.h optix_function_table_definition.h optix_host.h optix_stubs.h optix_types.h
+      internal/optix_device_impl.h internal/optix_device_impl_transformations.h internal/optix_micromap_impl.h optix_micromap.h)
+    if(EXISTS ${folder}/${name})
+      file(SHA256 ${folder}/${name} one)
+      string(APPEND all ${one})
+    endif()
+  endforeach()
+  string(SHA256 all "${all}")
+  set(${result} ${all} PARENT_SCOPE)
+endfunction()
+
+# One attempt of a few seconds a build folder, so that a machine without a network is not kept waiting.
+function(grainray_fetch_optix folder)
+  if(NOT EXISTS ${folder}/optix.h AND NOT GRAINRAY_OPTIX_TRIED)
+    set(GRAINRAY_OPTIX_TRIED ON CACHE INTERNAL "")
+    set(archive ${PROJECT_BINARY_DIR}/optix.tar.gz)
+    file(DOWNLOAD https://github.com/NVIDIA/optix-dev/archive/refs/tags/v${GRAINRAY_OPTIX_FETCHED}.tar.gz ${archive}
+      TIMEOUT 8 STATUS status TLS_VERIFY ON)
+    list(GET status 0 failed)
+    if(NOT failed)
+      execute_process(COMMAND ${CMAKE_COMMAND} -E tar xzf ${archive} WORKING_DIRECTORY ${PROJECT_BINARY_DIR} OUTPUT_QUIET ERROR_QUIET)
+    endif()
+    file(REMOVE ${archive})
+  endif()
+  grainray_optix_hash(${folder} hash)
+  if(NOT hash STREQUAL GRAINRAY_OPTIX_SHA256)
+    file(REMOVE_RECURSE ${folder})
+  endif()
+endfunction()
+
+if(GRAINRAY_HAS_CUDA AND NOT GRAINRAY_OPTIX STREQUAL OFF)
+  find_path(GRAINRAY_OPTIX_INCLUDE optix.h HINTS ${OptiX_ROOT} ENV OptiX_ROOT PATH_SUFFIXES include NO_DEFAULT_PATH)
+  if(NOT GRAINRAY_OPTIX_INCLUDE)
+    set(fetched ${PROJECT_BINARY_DIR}/optix-dev-${GRAINRAY_OPTIX_FETCHED}/include)
+    grainray_fetch_optix(${fetched})
+    if(EXISTS ${fetched}/optix.h)
+      set(GRAINRAY_OPTIX_INCLUDE ${fetched} CACHE PATH "Folder of optix.h" FORCE)
+    endif()
+  endif()
+  if(GRAINRAY_OPTIX_INCLUDE)
+    set(GRAINRAY_HAS_OPTIX ON)
+  else()
+    set(message "grainray: no OptiX headers (OptiX_ROOT is not set, github.com was not reached), so no search by rays on the GPU")
+    if(GRAINRAY_OPTIX STREQUAL ON)
+      message(FATAL_ERROR "${message}; set OptiX_ROOT, or leave GRAINRAY_OPTIX at AUTO")
+    endif()
+    message(STATUS "${message}")
+  endif()
+endif()

@@ -1,0 +1,117 @@
+// DEM on CUDA: contacts, planes and motion as one kernel a step, so that a particle's state crosses the memory bus once.
+// A batch of steps is launched without waiting. A step that sees a particle past its margin is complete, and those after it
+// find State::flags[0] below their own number and return; the host reads the flag once a batch.
+#include "boundary/plane_contact.hpp"
+#include "contacts/laws.hpp"
+#include "dynamics/motion.hpp"
+#include "exec/pairs_cuda.hpp"
+#include "stages.hpp"
+
+namespace grainray::cuda {
+namespace {
+
+constexpr unsigned step_threads = 128;
+
+__device__ inline void add_to(Wrench& sum, const Wrench& more) {
+    for (int a = 0; a < 3; ++a) {
+        sum.force[a] += more.force[a];
+        sum.torque[a] += more.torque[a];
+    }
+}
+
+template <class Law>
+struct FusedStep {
+    Law law;
+    PairRows pairs;
+    PlaneContacts<Law> planes;
+    Motion motion;
+    Near* near;
+    Far* far;
+    Body* body;
+    Vec3f* remainder;
+    const Near* __restrict__ built;
+    const Vec3f* __restrict__ frame;
+    std::uint32_t* flags;
+    const std::uint32_t* __restrict__ facet_rows;   // null without meshes and terrain
+    const Wrench* __restrict__ facet_forces;
+    double fine;
+    std::uint32_t size, age;
+    bool planes_move;
+
+    FusedStep(State& s, const Law& contact_law, const StepConstants& constants, float trigger)
+        : law(contact_law), pairs(s, s.only_parameters), planes(s, contact_law), motion(s, constants, trigger), near(s.next_near.data()),
+          far(s.next_far.size() ? s.next_far.data() : s.particles.far.data()), body(s.next_body.data()),
+          remainder(s.particles.remainder.data()), built(s.built.data()), frame(s.frame.data()), flags(s.flags.data()),
+          facet_rows(s.facets.count() ? s.facets.list.row_of.data() : nullptr), facet_forces(s.facets.list.forces.data()),
+          fine(s.particles.scale.fine()), size(static_cast<std::uint32_t>(s.size())), age(s.age.steps),
+          planes_move(s.planes.size() > s.plane_count) {}
+
+    template <bool periodic>
+    __device__ void operator()(std::uint32_t i, std::uint32_t step) const {
+        Near p = pairs.near[i];
+        Far f = pairs.far[i];
+        Body b = pairs.body[i];
+        Wrench sum{};
+        pairs.add<periodic>(law, i, p, f, b, sum);
+        if (planes.offsets[i] != planes.offsets[i + 1])
+            planes.add(i, convert<double>(join(p, f)) * fine, p.radius, b, planes_move ? std::size_t{step} * planes.plane_count : 0, sum);
+        if (facet_rows && facet_rows[i] != ~0u) add_to(sum, facet_forces[facet_rows[i]]);
+        Vec3f left = remainder[i];
+        const bool finite = motion.advance(sum, p, f, b, left);
+        near[i] = p;
+        far[i] = f;
+        body[i] = b;
+        remainder[i] = left;
+        if (!finite) {
+            atomicMin(&flags[1], i);
+            atomicMin(&flags[0], step);
+        } else if (motion.past_margin(p, built[i], frame[i], static_cast<float>(age + step + 1))) atomicMin(&flags[0], step);
+    }
+};
+
+template <bool periodic, class Law>
+__global__ void __launch_bounds__(step_threads, 1024 / step_threads) step_kernel(FusedStep<Law> fused, std::uint32_t step) {
+    if (*static_cast<const volatile std::uint32_t*>(fused.flags) < step) return;
+    const std::uint32_t i = blockIdx.x * blockDim.x + threadIdx.x;
+    if (i < fused.size) fused.template operator()<periodic>(i, step);
+}
+
+void swap_state(State& s) {
+    s.particles.near.swap(s.next_near);
+    s.particles.body.swap(s.next_body);
+    if (s.next_far.size()) s.particles.far.swap(s.next_far);
+}
+
+template <bool periodic, class Law>
+void launch(State& s, ContactLaw name, const Law& law, const StepConstants& constants, float trigger, std::uint32_t steps) {
+    const unsigned blocks = static_cast<unsigned>((s.size() + step_threads - 1) / step_threads);
+    for (std::uint32_t step = 0; step < steps; ++step) {
+        if (s.facets.count()) facets(s, name, constants, step, FacetTarget::rows);
+        step_kernel<periodic><<<blocks, step_threads>>>(FusedStep<Law>(s, law, constants, trigger), step);
+        swap_state(s);
+    }
+    check(cudaGetLastError(), "launch of a step");
+}
+
+}  // namespace
+
+std::uint32_t fused(State& s, ContactLaw law, const StepConstants& constants, float trigger, std::uint32_t steps) {
+    const bool periodic = s.period.x > 0 || s.period.y > 0 || s.period.z > 0;
+    s.next_near.resize_discard(s.size());
+    s.next_body.resize_discard(s.size());
+    if (periodic) s.next_far.resize_discard(s.size());
+    with_law(law, constants.dt, [&](auto functor) {
+        if (periodic) launch<true>(s, law, functor, constants, trigger, steps);
+        else launch<false>(s, law, functor, constants, trigger, steps);
+    });
+    std::uint32_t stop = 0;
+    check(cudaMemcpy(&stop, s.flags.data(), sizeof stop, cudaMemcpyDeviceToHost), "step");
+    const bool stopped = stop != ~0u;
+    const std::uint32_t done = stopped ? stop + 1 : steps;
+    if ((steps - done) % 2) swap_state(s);  // the steps that returned at once wrote nothing
+    s.age.steps += done;
+    s.age.outdated = stopped || s.age.steps >= s.age.limit;
+    return done;
+}
+
+}  // namespace grainray::cuda
