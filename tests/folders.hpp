@@ -11,7 +11,7 @@ inline std::filesystem::path program_folder() { return std::filesystem::read_sym
 /// The folder that holds examples/ and docs/.
 inline std::filesystem::path project_folder() {
     const std::filesystem::path package = program_folder().parent_path();
-    return std::filesystem::exists(package / "examples") ? package : std::filesystem::path(GRAINRAY_SOURCE_DIR);
+    return std::filesystem::exists(package / "examples" / "column_collapse.toml") ? package : std::filesystem::path(GRAINRAY_SOURCE_DIR);
 }
 
 }  // namespace grainray::test

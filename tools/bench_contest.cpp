@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <ctime>
 
 #include <fmt/format.h>
 
@@ -20,6 +21,12 @@ double seconds_of(const F& f) {
     return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
+double processor_seconds() {
+    timespec t{};
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+    return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
 /// Runs f; what it throws becomes the figures' failure.
 template <class F>
 void attempt(Figures& figures, const F& f) {
@@ -33,12 +40,14 @@ void attempt(Figures& figures, const F& f) {
 
 /// The times of one contender, a round each.
 struct Times {
-    std::vector<double> search, update, build, refit;
+    std::vector<double> search, processor, update, build, refit;
     double used = 0;
 
     /// A search that follows a build cannot keep anything of the last search, and the other way round.
     void round(const Contender& c) {
+        const double before = processor_seconds();
         search.push_back(seconds_of(c.search));
+        processor.push_back(processor_seconds() - before);
         used += search.back();
         if (c.update) update.push_back(seconds_of(c.update));
         if (c.build) build.push_back(seconds_of(c.build));
@@ -60,6 +69,7 @@ void summarize(const Times& times, Figures& f) {
     f.repeats = static_cast<int>(times.search.size());
     f.median = median_ms(times.search);
     f.least = 1e3 * *std::min_element(times.search.begin(), times.search.end());
+    if (!times.processor.empty()) f.processor = 1e3 * *std::min_element(times.processor.begin(), times.processor.end());
     f.update = median_ms(times.update);
     f.build = median_ms(times.build);
     f.refit = median_ms(times.refit);
@@ -103,8 +113,11 @@ std::vector<Figures> take_turns(const std::vector<Contender>& contenders, double
     for (std::size_t c = 0; c < contenders.size(); ++c) {
         all[c].name = contenders[c].name;
         attempt(all[c], [&] {
-            const double warm_up = seconds_of([&] { all[c].entries = contenders[c].search(); });
-            if (warm_up > long_search) times[c].search.push_back(times[c].used = warm_up);
+            const double before = processor_seconds(), warm_up = seconds_of([&] { all[c].entries = contenders[c].search(); });
+            if (warm_up > long_search) {
+                times[c].search.push_back(times[c].used = warm_up);
+                times[c].processor.push_back(processor_seconds() - before);
+            }
             if (contenders[c].memory_bytes) all[c].memory_bytes = contenders[c].memory_bytes();
             if (contenders[c].build) contenders[c].build();
         });
@@ -144,6 +157,7 @@ nlohmann::ordered_json row_json(const Cloud& cloud, bool both_sides, const Figur
     row["neighbors_per_point"] = neighbors / static_cast<double>(std::max<std::size_t>(cloud.size(), 1));
     row["milliseconds"] = f.median;
     row["milliseconds_min"] = f.least;
+    if (f.processor > 0) row["milliseconds_processor"] = f.processor;
     if (f.update > 0) row["milliseconds_update"] = f.update;
     if (f.build > 0) row["milliseconds_build"] = f.build;
     if (f.refit > 0) row["milliseconds_refit"] = f.refit;

@@ -26,6 +26,7 @@ struct Contender {
 struct Figures {
     std::string name, failure;  ///< failure: why there are no figures, else empty
     double median = 0, least = 0;
+    double processor = 0;                     ///< least time of the processor, all threads together: what others do on it counts less
     double update = 0, build = 0, refit = 0;  ///< medians
     std::uint64_t entries = 0;
     std::size_t memory_bytes = 0;

@@ -59,6 +59,37 @@ Measured measure(Simulation& simulation, std::int64_t warmup, std::int64_t steps
     return m;
 }
 
+/// Bytes that cross the GPU's memory bus in a fused step at the least, a particle: state read and written (near 16, far 12,
+/// body 32, remainder 12, twice), position of the last build and frame (28), where its rows begin (12), 4 an entry of its
+/// row, and 12 read and 12 written a contact, of which each of two particles keeps its own history.
+double fused_bytes(const SearchReport& search, const Statistics& statistics) {
+    return 2 * 72 + 28 + 12 + 4 * search.mean_neighbors + 24 * statistics.coordination;
+}
+
+/// Bytes a second, read and written, of the best of ten copies of half a gibibyte within the GPU.
+double copy_bandwidth() {
+    constexpr std::size_t bytes = std::size_t{1} << 29;
+    Array<char> from(Device::cuda, bytes), to(Device::cuda, bytes);
+    from.clear_bytes();
+    double best = 1e300;
+    for (int repeat = 0; repeat < 10; ++repeat) {
+        char last = 0;
+        const auto start = std::chrono::steady_clock::now();
+        for (int k = 0; k < 4; ++k) detail::copy(Device::cuda, to.data(), Device::cuda, from.data(), bytes);
+        detail::copy(Device::cpu, &last, Device::cuda, to.data() + bytes - 1, 1);
+        best = std::min(best, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() / 4);
+    }
+    return 2 * static_cast<double>(bytes) / best;
+}
+
+/// How near the fused step is to the speed of a copy.
+nlohmann::ordered_json traffic_json(const Simulation& simulation, const Measured& m, double copy) {
+    const double bytes = fused_bytes(m.search, simulation.statistics()) * static_cast<double>(simulation.size());
+    const double seconds = m.profile.fused / static_cast<double>(m.steps);
+    return {{"copy_bytes_per_second", copy}, {"fused_bytes_per_step", bytes}, {"fused_bytes_per_second", bytes / seconds},
+            {"share_of_copy", bytes / seconds / copy}};
+}
+
 nlohmann::ordered_json report(const Simulation& simulation, const Options& options, const Measured& m) {
     nlohmann::ordered_json json;
     const double n = static_cast<double>(std::max<std::size_t>(simulation.size(), 1));
@@ -75,6 +106,10 @@ nlohmann::ordered_json report(const Simulation& simulation, const Options& optio
     json["memory_bytes"] = simulation.memory_bytes();
     json["bytes_per_particle"] = static_cast<double>(simulation.memory_bytes()) / n;
     json["peak_rss_bytes"] = peak_resident_bytes();
+    if (simulation.device() == Device::cuda) {
+        json["gpu"] = cuda_status();
+        json["device_peak_bytes_per_particle"] = static_cast<double>(cuda_peak_bytes()) / n;
+    }
     return json;
 }
 
@@ -94,6 +129,12 @@ void print_table(const nlohmann::ordered_json& json, const Measured& m) {
     fmt::print("{:.4g} million particle-steps/s; rebuild every {:.3g} steps, {:.3g} neighbours in the list of a particle; {:.0f} bytes a particle, {} at the peak\n",
                json["particle_steps_per_second"].get<double>() / 1e6, m.search.mean_interval_steps, m.search.mean_neighbors,
                json["bytes_per_particle"].get<double>(), bytes_text(json["peak_rss_bytes"].get<double>()));
+    if (!json.contains("traffic")) return;
+    const auto& t = json["traffic"];
+    fmt::print("{}: {:.0f} bytes a particle at the peak; a fused step must move {:.0f} bytes a particle: {:.2f} TB/s, {:.0f}% of the {:.2f} TB/s of a copy\n",
+               json["gpu"].get<std::string>(), json["device_peak_bytes_per_particle"].get<double>(),
+               t["fused_bytes_per_step"].get<double>() / json["particles"].get<double>(), t["fused_bytes_per_second"].get<double>() / 1e12,
+               100 * t["share_of_copy"].get<double>(), t["copy_bytes_per_second"].get<double>() / 1e12);
 }
 
 int bench_step(const Options& options) {
@@ -108,7 +149,8 @@ int bench_step(const Options& options) {
     const Engine engine = choose_engine(options.engine, scene);
     Simulation simulation(scene, place_checked(scene), engine.options);
     const Measured m = measure(simulation, warmup, steps);
-    const auto json = report(simulation, options, m);
+    auto json = report(simulation, options, m);
+    if (simulation.device() == Device::cuda) json["traffic"] = traffic_json(simulation, m, copy_bandwidth());
     print_table(json, m);
     if (!options.json.empty()) write_text_atomically(options.json, json.dump(2) + '\n');
     return done;

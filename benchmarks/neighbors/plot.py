@@ -16,7 +16,8 @@ BACKENDS = {  # in the order of the legend; whatever else a file holds follows
     "cells": "#1b6ca8", "rays": "#d1495b", "rays-published": "#edae49", "brute": "#6c757d",
     "arborx": "#2a9d8f", "nanoflann": "#8e6c8a", "cunsearch": "#7f4f24",
 }
-TIMES = ("milliseconds", "milliseconds_min", "milliseconds_update", "milliseconds_build", "milliseconds_refit")
+TIMES = ("milliseconds", "milliseconds_min", "milliseconds_processor",
+         "milliseconds_update", "milliseconds_build", "milliseconds_refit")
 
 
 def load(files):

@@ -20,6 +20,8 @@ constexpr std::string_view name(Device d) { return d == Device::cpu ? "cpu" : "c
 bool cuda_available();
 /// One sentence: why cuda_available() is what it is ("NVIDIA H200, 140 GiB" or "built without CUDA: ...").
 std::string cuda_status();
+/// Most bytes that this process has held on the GPU at once.
+std::size_t cuda_peak_bytes();
 
 /// A GPU as the driver shows it.
 struct Gpu {

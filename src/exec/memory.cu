@@ -58,7 +58,12 @@ const memory::Cuda& memory::cuda() {
         allocate,
         [](void* p) noexcept { cudaFreeAsync(p, nullptr); },
         [](void* to, const void* from, std::size_t bytes) { grainray::cuda::check(cudaMemcpy(to, from, bytes, cudaMemcpyDefault), "copy"); },
-        [](void* p, std::size_t bytes) { grainray::cuda::check(cudaMemset(p, 0, bytes), "clear"); }};
+        [](void* p, std::size_t bytes) { grainray::cuda::check(cudaMemset(p, 0, bytes), "clear"); },
+        [] {
+            std::uint64_t bytes = 0;
+            if (probe().available) grainray::cuda::check(cudaMemPoolGetAttribute(pool(), cudaMemPoolAttrUsedMemHigh, &bytes), "memory pool");
+            return static_cast<std::size_t>(bytes);
+        }};
     return present;
 }
 

@@ -16,6 +16,7 @@ struct Cuda {
     void (*deallocate)(void*) noexcept;
     void (*copy)(void*, const void*, std::size_t);
     void (*clear)(void*, std::size_t);
+    std::size_t (*peak)();
 };
 const Cuda& cuda();
 

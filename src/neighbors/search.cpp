@@ -104,7 +104,7 @@ struct NeighborSearch::Impl {
                 if (!choice.out_of_the_race(seconds)) seconds = timed(run, name, list);  // the first also made its memory
                 choice.measured(c, seconds, now);
                 last_failed = false;
-            } catch (const SimulationError&) {  // out of memory, say: the others will do
+            } catch (const Error&) {  // out of memory, or too many points for it: the others will do
                 choice.measured(c, 1e9, now);
                 last_failed = true;
             }

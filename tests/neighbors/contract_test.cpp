@@ -73,6 +73,12 @@ TEST(Contract, BadBoxesAndBlocksAreRefused) {
     EXPECT_NE(refusal(c, {"auto", ListKind::blocked, 0, true, {}, {}}).find("block"), std::string::npos);
 }
 
+TEST(Contract, AStreamNeedsAGpu) {
+    SearchOptions options;
+    options.stream = &options;
+    EXPECT_NE(refusal(random_cloud("", 5, 0, 1, 0.1f, 1), options).find("Device::cuda"), std::string::npos);
+}
+
 TEST(Contract, RowsHaveNoCap) {
     const Cloud c = random_cloud("", 3000, 0, 1, 10.0f, 1);
     NeighborSearch search(Device::cpu, {"cells", ListKind::full, 1, true, {}, {}});

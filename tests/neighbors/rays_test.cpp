@@ -23,7 +23,7 @@ struct Filled {
         NeighborList list;
         RowsMemory memory(Device::cpu);
         cpu::make_rows({slots, {order.data(), order.size()}, spheres, {ids.data(), ids.size()}, {doubtful.data(), 1}, spheres, spheres, {}}, reported,
-                       {kind, block, true, {}, {}}, memory, list);
+                       {kind, block, true, false, {}, {}}, memory, list);
         return list;
     }
 };

@@ -25,7 +25,9 @@ TEST_P(SameHash, WhateverTheBackend) {
     const auto cells = hash_after(c, 250, GetParam(), "cells");
     EXPECT_EQ(hash_after(c, 250, GetParam(), "auto"), cells);
     for (const BackendInfo& b : search_backends(GetParam()))
-        if (b.available) EXPECT_EQ(hash_after(c, 250, GetParam(), b.name), cells) << b.name;
+        if (b.available) {
+            EXPECT_EQ(hash_after(c, 250, GetParam(), b.name), cells) << b.name;
+        }
     const Case measured = column(20, 18, 20);  // so many that auto measures
     EXPECT_EQ(hash_after(measured, 60, GetParam(), "auto"), hash_after(measured, 60, GetParam(), "cells"));
 }

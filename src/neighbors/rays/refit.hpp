@@ -12,7 +12,6 @@ class RefitPolicy {
 public:
     /// Whether the next update should rebuild.
     bool rebuild() const { return refits_ >= cycle(); }
-    int refits() const { return refits_; }
 
     /// How many refits to let a tree live through.
     int cycle() const {
