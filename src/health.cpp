@@ -25,6 +25,10 @@ Vec3d domain_corner(const Domain& domain, int side) {
     return corner;
 }
 
+std::string surface_name(const Scene& scene, std::uint32_t surface) {
+    return surface < scene.meshes.size() ? "mesh '" + scene.meshes[surface].name + "'" : "the terrain";
+}
+
 template <class... Arguments>
 std::string format(const char* text, Arguments... arguments) {
     char buffer[512];
@@ -43,6 +47,7 @@ Checkpoint Simulation::checkpoint() const {
     c.dt = impl_->scene.dt;
     c.unit = snap.scale.unit;
     c.origin = snap.scale.origin;
+    c.largest_radius = impl_->largest_radius;
     c.scene = impl_->scene.source;
     c.state_hash = state_hash();
     std::vector<std::uint32_t> order(n);
@@ -72,6 +77,7 @@ Checkpoint Simulation::checkpoint() const {
         else pairs.push_back({b, a, -t.history});
     });
     const auto before = [](const Entry& x, const Entry& y) { return x.a != y.a ? x.a < y.a : x.b < y.b; };
+    add_facets(snap, c);
     std::sort(pairs.begin(), pairs.end(), before);
     std::sort(walls.begin(), walls.end(), before);
     for (const Entry& e : pairs) {
@@ -89,7 +95,8 @@ Checkpoint Simulation::checkpoint() const {
 
 std::uint64_t Simulation::state_hash() const {
     const Impl& s = *impl_;
-    return mix(0, s.step_number) + (s.state.size() ? s.stage.hash(s.state) : 0);
+    if (s.state.size() == 0) return mix(0, s.step_number);
+    return mix(0, s.step_number) + s.stage.hash(s.state) + (s.state.facets.count() ? s.stage.hash_facets(s.state) : 0);
 }
 
 void Simulation::check_health() const {
@@ -98,7 +105,11 @@ void Simulation::check_health() const {
     const double speed_limit = s.scene.limits.speed > 0 ? s.scene.limits.speed : s.smallest_radius / s.scene.dt;
     const auto flags = s.state.flags.to_host();
     const bool every_step_finite = s.rebuilds == 0 || flags[1] == ~0u;
-    if (every_step_finite && s.stage.healthy(s.state, {speed_limit, s.scene.limits.overlap, domain_corner(s.scene.domain, -1), domain_corner(s.scene.domain, 1)})) return;
+    const std::uint64_t crossed = s.state.facets.count() ? s.state.facets.crossed.to_host()[0] : ~0ull;
+    bool surfaces_hold = crossed == ~0ull;
+    for (std::uint32_t q = 0; q < s.state.facets.count(); ++q)
+        surfaces_hold = surfaces_hold && s.stage.surface_totals(s.state, s.law, q).max_overlap_ratio <= s.scene.limits.overlap;
+    if (every_step_finite && surfaces_hold && s.stage.healthy(s.state, {speed_limit, s.scene.limits.overlap, domain_corner(s.scene.domain, -1), domain_corner(s.scene.domain, 1)})) return;
     const Snapshot snap(s.state, s.law);
     const std::size_t n = snap.size();
 
@@ -131,7 +142,24 @@ void Simulation::check_health() const {
             what = format("overlap of %.4g of the smaller radius, past the limit of %.4g (limits.overlap), of", ratio, s.scene.limits.overlap);
         }
     });
+    snap.for_each_facet_contact([&](const FacetTouch& c) {
+        const double ratio = c.overlap / snap.radius(c.i);
+        if (worst == n && ratio > s.scene.limits.overlap) {
+            worst = c.i;
+            what = format("overlap of %.4g of the radius, past the limit of %.4g (limits.overlap), with ", ratio, s.scene.limits.overlap) +
+                   surface_name(s.scene, c.surface) + " of";
+        }
+    });
+    if (worst == n && crossed != ~0ull) {
+        worst = static_cast<std::size_t>(std::find(snap.id.begin(), snap.id.end(), crossed >> 32) - snap.id.begin());
+        what = "went through " + surface_name(s.scene, static_cast<std::uint32_t>(crossed)) + ":";
+        remedy = "A particle must move less than its diameter in a step, and a contact holds until its overlap is the diameter: lower simulation.dt or "
+                 "raise the stiffness";
+    }
     if (worst == n) return;
+    snap.for_each_facet_contact([&](const FacetTouch& c) {
+        if (named < 4 && c.i == worst) neighbors += (named++ ? ", " : "") + surface_name(s.scene, c.surface) + format(" (overlap %.4g m)", c.overlap);
+    });
     snap.for_each_contact([&](const TouchingContact& c) {
         if (named == 4 || (c.i != worst && (c.wall || c.j != worst))) return;
         const std::string other = c.wall ? "plane '" + s.scene.planes[c.j].name + "'" : "particle " + std::to_string(snap.id[c.i == worst ? c.j : c.i]);

@@ -21,6 +21,13 @@ struct HealthLimits {
     Vec3d lower, upper;     ///< the domain; infinite where it has no end
 };
 
+/// What the particles do to one mesh or the terrain.
+struct SurfaceTotals {
+    Vec3d force, torque;  ///< N; about the point the surface turns about, N m
+    double max_overlap_ratio = 0;
+    std::uint64_t contacts = 0;
+};
+
 /// Contact figures a particle, storage order. Forces are summed in quanta, so that no order of summing shows.
 struct ContactFields {
     explicit ContactFields(Device device) : coordination(device), force(device) {}

@@ -12,7 +12,7 @@ Snapshot::Snapshot(const State& s, ContactLaw contact_law)
     : near(s.particles.near.to_host()), far(s.particles.far.to_host()), body(s.particles.body.to_host()), remainder(s.particles.remainder.to_host()),
       id(s.particles.id.to_host()),
       wall_offsets(s.walls.offsets.to_host()), wall_partners(s.walls.partners.to_host()), wall_history(s.walls.history.to_host()),
-      planes(s.planes.to_host()), grain_parameters(s.grain_parameters.to_host()), wall_parameters(s.wall_parameters.to_host()),
+      planes(s.planes.to_host()), facets(s.facets), grain_parameters(s.grain_parameters.to_host()), wall_parameters(s.wall_parameters.to_host()),
       scale(s.particles.scale), period(s.period), period_lower(s.period_lower), block(s.block), materials(s.materials), law(contact_law) {
     if (s.size() == 0) return;
     ContactList pairs(s.particles.near.device());
@@ -85,7 +85,15 @@ Statistics Simulation::statistics() const {
     out.front_99 = s.stage.quantile_x(s.state, 0.99);
     out.max_overlap_ratio = t.max_overlap_ratio;
     out.contacts = t.contacts;
-    out.coordination = t.contact_sides / static_cast<double>(s.state.size());
+    double sides = t.contact_sides;
+    for (std::uint32_t q = 0; q < s.state.facets.count(); ++q) {
+        const SurfaceTotals on = s.stage.surface_totals(s.state, s.law, q);
+        out.surfaces.push_back({q < s.scene.meshes.size() ? s.scene.meshes[q].name : "terrain", on.force, on.torque, on.contacts});
+        out.max_overlap_ratio = std::max(out.max_overlap_ratio, on.max_overlap_ratio);
+        out.contacts += on.contacts;
+        sides += static_cast<double>(on.contacts);
+    }
+    out.coordination = sides / static_cast<double>(s.state.size());
     out.mean_neighbors = search().mean_neighbors;
     return out;
 }
@@ -100,6 +108,7 @@ Frame Simulation::frame() const {
     if (n == 0) return f;
     ContactFields fields(s.options.device);
     s.stage.contact_fields(s.state, s.law, fields);
+    if (s.state.facets.count()) s.stage.facet_fields(s.state, s.law, fields);
     const auto near = p.near.to_host();
     const auto far = p.far.to_host();
     const auto body = p.body.to_host();
@@ -146,7 +155,7 @@ std::size_t Simulation::memory_bytes() const {
     const Impl& s = *impl_;
     const Particles& p = s.state.particles;
     return p.near.bytes() + p.far.bytes() + p.body.bytes() + p.remainder.bytes() + s.state.frame.bytes() + p.id.bytes() + s.state.wrench.bytes() + s.state.built.bytes() +
-           s.state.grains.bytes() + s.state.walls.bytes() + s.old_grains.bytes() + s.old_walls.bytes() + s.old_index.bytes() + s.spheres.bytes() + s.search.memory_bytes();
+           s.state.grains.bytes() + s.state.walls.bytes() + s.old_grains.bytes() + s.old_walls.bytes() + s.old_index.bytes() + s.spheres.bytes() + s.search.memory_bytes() + s.state.facets.bytes();
 }
 
 }  // namespace grainray

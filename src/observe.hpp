@@ -17,6 +17,30 @@ struct TouchingContact {
     Vec3f history;   ///< on i, N
 };
 
+/// One particle on one mesh or the terrain, all its facets together.
+struct FacetTouch {
+    std::uint32_t i, surface;   ///< surface: meshes in the order of the scene, then the terrain
+    double overlap;             ///< the largest, m
+    Vec3f force;                ///< on i, N
+    Vec3d on_surface, torque;   ///< force on the surface, N, and torque on it about its centre of rotation, N m
+};
+
+/// Host copies of the surfaces and rows.
+struct FacetSnapshot {
+    explicit FacetSnapshot(const Facets&);
+    std::vector<Surface> surfaces;
+    std::vector<Triangle> triangles;
+    std::vector<std::uint32_t> cell_offsets, cell_triangles;
+    std::vector<double> heights;
+    std::vector<SurfaceNow> now;
+    std::vector<PairParameters> parameters;
+    std::vector<std::uint32_t> particles;
+    std::vector<std::uint64_t> offsets;
+    std::vector<std::uint32_t> facets;
+    std::vector<FacetState> states;
+    FacetShapes shapes() const;
+};
+
 struct Snapshot {
     Snapshot(const State&, ContactLaw);
     std::vector<Near> near;
@@ -28,6 +52,7 @@ struct Snapshot {
     std::vector<std::uint32_t> grain_partners, wall_partners;
     std::vector<Vec3f> grain_history, wall_history;
     std::vector<PlaneNow> planes;
+    FacetSnapshot facets;
     std::vector<PairParameters> grain_parameters, wall_parameters;
     PositionScale scale;
     Vec3l period, period_lower;
@@ -40,6 +65,17 @@ struct Snapshot {
     double radius(std::size_t i) const { return near[i].radius * scale.unit; }
     /// Every touching contact once, in storage order.
     void for_each_contact(const std::function<void(const TouchingContact&)>&) const;
+    /// Every particle on every mesh or terrain it touches, in storage order.
+    void for_each_facet_contact(const std::function<void(const FacetTouch&)>&) const;
+    /// What the next step needs to know of the last one.
+    void for_each_facet_memory(const std::function<void(std::uint32_t i, std::uint32_t facet, const FacetState&)>&) const;
 };
+
+/// The checkpoint with the particles at these places alone, and the contacts among them.
+Checkpoint only(const Checkpoint&, const std::vector<std::uint32_t>& places);
+
+/// Into a checkpoint, and out of it as rows of an old list.
+void add_facets(const Snapshot&, Checkpoint&);
+void restore_facets(const Checkpoint&, FacetList&);
 
 }  // namespace grainray

@@ -2,9 +2,10 @@
 #include <algorithm>
 #include <numeric>
 
+#include "boundary/build.hpp"
 #include "contacts/laws.hpp"
 #include "exec/exec.hpp"
-#include "simulation_impl.hpp"
+#include "observe.hpp"
 
 namespace grainray {
 
@@ -28,6 +29,7 @@ const Stages& stages(Device device) {
 namespace {
 
 constexpr double pi = 3.14159265358979323846;
+constexpr double lost_interval = 0.1;  // s between two looks for lost particles
 
 PairParameters kernel_parameters(const MaterialPair& p) {
     return {static_cast<float>(p.normal_stiffness), static_cast<float>(p.tangential_stiffness), static_cast<float>(p.friction),
@@ -103,7 +105,7 @@ void set_period(const Scene& scene, State& state) {
 
 }  // namespace
 
-Simulation::Impl::Impl(const Scene& s, const SimulationOptions& o, const PositionScale& scale, const InitialState& sizes)
+Simulation::Impl::Impl(const Scene& s, const SimulationOptions& o, const PositionScale& scale, const InitialState& sizes, double largest_ever)
     : scene(s), options(o), threads(o.threads), state(o.device), search(o.device), stage(stages(o.device)),
       law(contact_law(s.contact.law)), old_grains(o.device), old_walls(o.device), found(o.device), old_index(o.device),
       spheres(o.device) {
@@ -114,20 +116,30 @@ Simulation::Impl::Impl(const Scene& s, const SimulationOptions& o, const Positio
     set_period(scene, state);
     search = NeighborSearch(options.device, search_options(scene, options, state, state.block));
 
-    std::vector<PairParameters> grains, walls;
+    std::vector<PairParameters> grains, walls, facets;
     double stiffest = 1;
     for (std::size_t a = 0; a < nm; ++a) {
         for (std::size_t b = 0; b < nm; ++b) grains.push_back(kernel_parameters(contact_parameters(scene, a, b, false)));
         for (const Plane& plane : scene.planes)
             walls.push_back(kernel_parameters(contact_parameters(scene, a, material_index(scene, plane.material), true)));
+        for (const Mesh& mesh : scene.meshes)
+            facets.push_back(kernel_parameters(contact_parameters(scene, a, material_index(scene, mesh.material), true)));
+        if (scene.terrain) facets.push_back(kernel_parameters(contact_parameters(scene, a, material_index(scene, scene.terrain->material), true)));
     }
-    for (const auto* table : {&grains, &walls})
+    for (const auto* table : {&grains, &walls, &facets})
         for (const PairParameters& p : *table) stiffest = std::max({stiffest, double{p.kn}, double{p.kt}});
     state.grain_parameters.assign(grains);
     if (nm) state.only_parameters = grains[0];
     state.wall_parameters.assign(walls);
+    state.facets.parameters.assign(facets);
+    build_facets(scene, scale, state.facets);
+    meshes_move = facets_move(scene);
+    region = lost_region(scene, state.facets);
+    if (region) lost_every = std::max<std::uint64_t>(1, static_cast<std::uint64_t>(std::llround(lost_interval / scene.dt)));
 
-    const double largest = sizes.radii.empty() ? 1 : *std::max_element(sizes.radii.begin(), sizes.radii.end());
+    largest_radius = sizes.radii.empty() && largest_ever == 0 ? 1 : largest_ever;
+    for (const double r : sizes.radii) largest_radius = std::max(largest_radius, r);
+    const double largest = largest_radius;
     if (n) smallest_radius = *std::min_element(sizes.radii.begin(), sizes.radii.end());
     state.quanta = Quanta::for_scale(stiffest, largest);
     constants = {static_cast<float>(scene.dt), convert<float>(scene.gravity), static_cast<float>(scene.contact.mass_damping)};
@@ -209,8 +221,12 @@ struct OldLists {
 }  // namespace
 
 Simulation::Simulation(const Scene& scene, const Checkpoint& c, const SimulationOptions& options)
-    : impl_(std::make_unique<Impl>(scene, options, PositionScale{c.unit, c.origin}, sizes_of(c))) {
-    Particles& p = impl_->state.particles;
+    : impl_(std::make_unique<Impl>(scene, options, PositionScale{c.unit, c.origin}, sizes_of(c), c.largest_radius)) {
+    impl_->load(c);
+}
+
+void Simulation::Impl::load(const Checkpoint& c) {
+    Particles& p = state.particles;
     const std::size_t n = c.id.size();
     std::vector<Near> near(n);
     std::vector<Far> far(n);
@@ -233,10 +249,13 @@ Simulation::Simulation(const Scene& scene, const Checkpoint& c, const Simulation
         for (auto& id : ids) id = place.at(id);
         return ids;
     };
-    OldLists(n, places(c.contact_a), places(c.contact_b), c.contact_history).store(impl_->old_grains);
-    OldLists(n, places(c.wall_particle), c.wall_plane, c.wall_history).store(impl_->old_walls);
-    impl_->step_number = c.step;
-    impl_->prepare();
+    OldLists(n, places(c.contact_a), places(c.contact_b), c.contact_history).store(old_grains);
+    OldLists(n, places(c.wall_particle), c.wall_plane, c.wall_history).store(old_walls);
+    restore_facets(c, state.facets.list);
+    if (!stage.fused) state.wrench.resize_discard(n);
+    state.wrench.clear_bytes();
+    step_number = c.step;
+    prepare();
 }
 
 Simulation::~Simulation() = default;

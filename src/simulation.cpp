@@ -1,5 +1,6 @@
 // A time step. Impl::step() is the table of contents of the whole program.
-#include "simulation_impl.hpp"
+#include "boundary/build.hpp"
+#include "observe.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -30,6 +31,7 @@ void Simulation::Impl::step() {
     {
         Timed timed(profile.boundary);
         stage.walls(state, law, constants);
+        if (state.facets.count()) stage.facets(state, law, constants, 0, FacetTarget::wrench);
     }
     {
         Timed timed(profile.dynamics);
@@ -39,6 +41,7 @@ void Simulation::Impl::step() {
     }
     ++step_number;
     if (planes_move) place_planes();
+    if (meshes_move) place_meshes();
 }
 
 std::uint32_t Simulation::Impl::fused_steps(std::uint64_t most) {
@@ -48,9 +51,11 @@ std::uint32_t Simulation::Impl::fused_steps(std::uint64_t most) {
     const auto steps = static_cast<std::uint32_t>(
         std::min({most, std::uint64_t{state.age.limit - state.age.steps}, std::uint64_t{64}, static_cast<std::uint64_t>(std::ceil(expected))}));
     if (planes_move) place_planes(steps);
+    if (meshes_move) place_meshes(steps);
     const std::uint32_t done = stage.fused(state, law, constants, margin_rule.trigger, steps);
     step_number += done;
     if (planes_move) place_planes();
+    if (meshes_move) place_meshes();
     return done;
 }
 
@@ -73,6 +78,7 @@ void Simulation::Impl::tune_interval() {
 
 void Simulation::Impl::prepare() {
     place_planes();
+    place_meshes();
     if (state.size()) threads.run([&] { make_lists(); });
 }
 
@@ -92,6 +98,7 @@ void Simulation::Impl::make_lists() {
     search.find(Points{s, s + 1, s + 2, 4, s + 3, 4, 0, state.particles.id.data(), state.size()}, found);
     stage.list_pairs(state, found, old_grains, old_index);
     stage.list_walls(state, constants, old_walls, old_index);
+    if (state.facets.count()) stage.list_facets(state, constants, old_index);
 
     detail::copy(options.device, state.flags.data(), Device::cpu, std::array{~0u, ~0u}.data(), 2 * sizeof(std::uint32_t));
     state.age.steps = 0;
@@ -115,11 +122,33 @@ void Simulation::Impl::place_planes(std::uint32_t steps) {
     state.planes.assign(now);
 }
 
+void Simulation::Impl::place_meshes(std::uint32_t steps) { place_facets(scene, state.particles.scale, step_number, steps, state.facets); }
+
 void Simulation::step() { run(1); }
 
 void Simulation::run(std::uint64_t steps) {
-    if (impl_->state.size()) impl_->threads.run([&] { impl_->run(steps); });
-    else impl_->step_number += steps;
+    Impl& s = *impl_;
+    while (steps > 0) {
+        const std::uint64_t every = s.lost_every, batch = every ? std::min(steps, every - s.step_number % every) : steps;
+        if (s.state.size()) s.threads.run([&] { s.run(batch); });
+        else s.step_number += batch;
+        steps -= batch;
+        if (every && s.step_number % every == 0) take_out_lost();
+    }
+}
+
+/// Rare, so by the way of a restart, which is exact: what remains is the state, less the lost.
+void Simulation::take_out_lost() {
+    Impl& s = *impl_;
+    if (s.state.size() == 0 || s.stage.count_lost(s.state, *s.region) == 0) return;
+    const Checkpoint all = checkpoint();
+    const PositionScale& scale = s.state.particles.scale;
+    std::vector<std::uint32_t> kept;
+    for (std::size_t i = 0; i < all.id.size(); ++i) {
+        if (!s.region->lost(scale.local(all.position[i]), all.radius_units[i] * scale.unit)) kept.push_back(static_cast<std::uint32_t>(i));
+        else s.lost.push_back({s.step_number, s.time(), all.id[i], scale.world(all.position[i]), all.velocity[i]});
+    }
+    s.load(only(all, kept));
 }
 
 std::size_t Simulation::size() const { return impl_->state.size(); }
@@ -129,5 +158,6 @@ double Simulation::dt() const { return impl_->scene.dt; }
 Device Simulation::device() const { return impl_->options.device; }
 const Profile& Simulation::profile() const { return impl_->profile; }
 Profile& Simulation::profile() { return impl_->profile; }
+const std::vector<LostParticle>& Simulation::lost() const { return impl_->lost; }
 
 }  // namespace grainray

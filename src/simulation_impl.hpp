@@ -2,6 +2,8 @@
 // observe.cpp (looking at it).
 #pragma once
 
+#include <optional>
+
 #include "exec/threads.hpp"
 #include "grainray/simulation.hpp"
 #include "neighbors/interval.hpp"
@@ -31,10 +33,15 @@ struct Simulation::Impl {
     std::uint64_t step_number = 0;
     std::uint64_t rebuilds = 0, steps_since_start = 0;
     double critical_dt = 0, smallest_radius = 1;
-    bool planes_move = false;
+    double largest_radius = 0;               ///< m, of all particles there ever were: it sets the quanta of forces
+    bool planes_move = false, meshes_move = false;
+    std::optional<LostRegion> region;        ///< of an open terrain
+    std::uint64_t lost_every = 0;            ///< steps between two looks for lost particles; 0: none can be lost
+    std::vector<LostParticle> lost;
     Profile profile;
 
-    Impl(const Scene&, const SimulationOptions&, const PositionScale&, const InitialState& sizes);
+    Impl(const Scene&, const SimulationOptions&, const PositionScale&, const InitialState& sizes, double largest_radius = 0);
+    void load(const Checkpoint&);            ///< particles, histories and time
 
     void prepare();                          ///< planes and first lists, so that observers see contacts before any step
     void run(std::uint64_t steps);
@@ -43,6 +50,7 @@ struct Simulation::Impl {
     void update_lists();
     void make_lists();
     void place_planes(std::uint32_t steps = 1);     ///< where they are at time(), and at the steps after it
+    void place_meshes(std::uint32_t steps = 1);     ///< the same
     void tune_interval();
     double time_of(std::uint64_t step) const { return static_cast<double>(step) * scene.dt; }
     double time() const { return time_of(step_number); }

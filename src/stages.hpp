@@ -36,6 +36,19 @@ struct Stages {
     std::uint64_t (*hash)(const State&);
     bool (*healthy)(const State&, const HealthLimits&);
     void (*contact_fields)(const State&, ContactLaw, ContactFields& out);
+
+    /// Meshes and terrain: rows of facets within reach of a particle until the list's limit, with what the old rows remember.
+    void (*list_facets)(State&, const StepConstants&, const Array<std::uint32_t>& old_index);
+    /// Their forces, of the particles that have a row, before those steps that use them. step: of a batch, and row of Facets::now
+    /// where surfaces move.
+    void (*facets)(State&, ContactLaw, const StepConstants&, std::uint32_t step, FacetTarget);
+    SurfaceTotals (*surface_totals)(const State&, ContactLaw, std::uint32_t surface);
+    /// What belongs to State's hash.
+    std::uint64_t (*hash_facets)(const State&);
+    /// Adds to what contact_fields found.
+    void (*facet_fields)(const State&, ContactLaw, ContactFields&);
+    /// Particles that left an open terrain.
+    std::size_t (*count_lost)(const State&, const LostRegion&);
 };
 const Stages& stages(Device);
 

@@ -1,6 +1,7 @@
 // What a running simulation keeps on its device, and what its stages are told. Stages see nothing else.
 #pragma once
 
+#include "boundary/facets.hpp"
 #include "contacts/pair.hpp"
 #include "grainray/neighbors.hpp"
 
@@ -36,7 +37,8 @@ struct ListAge {
 struct State {
     explicit State(Device device)
         : particles(device), wrench(device), next_near(device), next_far(device), next_body(device), built(device), frame(device),
-          grains(device), walls(device), grain_parameters(device), wall_parameters(device), planes(device), flags(device, 2) {}
+          grains(device), walls(device), grain_parameters(device), wall_parameters(device), planes(device), facets(device),
+          flags(device, 2) {}
 
     Particles particles;
     Array<Wrench> wrench;   ///< sums of the step under way; the integrator leaves zeros. Not used by the fused step
@@ -52,6 +54,7 @@ struct State {
     Array<PairParameters> wall_parameters;   ///< materials x planes
     Array<PlaneNow> planes; ///< where they are now; of a batch of fused steps with moving planes, one set a step
     std::uint32_t plane_count = 0;
+    Facets facets;          ///< meshes and terrain
     Array<std::uint32_t> flags;  ///< [0] a particle past its margin (fused: the step that saw one), [1] one whose step is not finite; ~0: none
     std::uint32_t materials = 0;
     std::uint32_t block = 1;     ///< of ListKind::blocked

@@ -1,6 +1,7 @@
 // grainray check: everything that can be said about a scene without running it.
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <map>
 
@@ -53,12 +54,31 @@ void print_particles(const Scene& scene, const InitialState& s) {
     fmt::print("planes       {}\n", scene.planes.size());
 }
 
+void print_surfaces(const Scene& scene) {
+    for (const Mesh& mesh : scene.meshes) {
+        MeshReport r;
+        load_mesh(scene, mesh, &r);
+        fmt::print("mesh         {}: {} triangles, {} corners, {:.6g} m2, {} free edges, {} to {} m\n", mesh.name, r.triangles, r.vertices, r.area, r.free_edges,
+                   vector_text(r.bounds.lower + mesh.translation), vector_text(r.bounds.upper + mesh.translation));
+    }
+    if (!scene.terrain) return;
+    const ElevationGrid g = load_ground(scene);
+    const auto holes = std::count_if(g.heights.begin(), g.heights.end(), [](double h) { return std::isnan(h); });
+    fmt::print("terrain      {} x {} nodes, {:.6g} x {:.6g} m apart, from ({:.8g}, {:.8g}) m, {} holes\n", g.columns, g.rows, g.dx, g.dy, g.x, g.y, holes);
+}
+
 void print_overlaps(const Scene& scene, const Overlaps& o) {
-    fmt::print("overlaps     {} pairs, {} with planes at the start\n", o.pairs, o.with_planes);
+    fmt::print("overlaps     {} pairs, {} with planes{} at the start\n", o.pairs, o.with_planes,
+               scene.meshes.empty() && !scene.terrain ? "" : fmt::format(", {} with meshes and terrain", o.with_surfaces));
     if (const auto& w = o.worst_pair)
         fmt::print("  worst pair       particles {} and {}: {:.4g} m, {:.3g} of the smaller radius\n", w->a, w->b, w->overlap, w->ratio);
     if (const auto& w = o.worst_plane)
         fmt::print("  worst plane      particle {} in '{}': {:.4g} m, {:.3g} of its radius\n", w->particle, scene.planes[w->plane].name, w->overlap, w->ratio);
+}
+
+void print_surface_overlap(const Overlaps& o) {
+    if (const auto& w = o.worst_surface)
+        fmt::print("  worst surface    particle {} in {}: {:.4g} m, {:.3g} of its radius\n", w->particle, w->surface, w->overlap, w->ratio);
 }
 
 void print_steps(const Scene& scene, const std::vector<CriticalStep>& steps) {
@@ -105,7 +125,9 @@ int check(const Options& options) {
     inspect_disk(".", preflight);
     fmt::print("scene        {}{}\n", options.scene.string(), scene.title.empty() ? "" : ": " + scene.title);
     print_particles(scene, particles);
+    print_surfaces(scene);
     print_overlaps(scene, preflight.overlaps);
+    print_surface_overlap(preflight.overlaps);
     print_steps(scene, preflight.steps);
     if (!preflight.first_refusal()) print_probe(scene, particles, preflight, engine);
     for (const Finding& finding : preflight.findings) fmt::print("{:<12} {}\n", finding.weight == Weight::refused ? "refused" : finding.weight == Weight::note ? "note" : "warning", finding.text);

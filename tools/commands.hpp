@@ -20,6 +20,7 @@ using Action = std::function<int()>;
 void add_run(CLI::App&, Action& chosen);
 void add_check(CLI::App&, Action& chosen);
 void add_info(CLI::App&, Action& chosen);
+void add_terrain(CLI::App&, Action& chosen);
 void add_render(CLI::App&, Action& chosen);
 void add_bench(CLI::App&, Action& chosen);            ///< and below it:
 void add_bench_step(CLI::App& bench, Action& chosen);

@@ -44,6 +44,7 @@ void add_commands(CLI::App& app, Action& chosen) {
     add_check(app, chosen);
     add_info(app, chosen);
     add_render(app, chosen);
+    add_terrain(app, chosen);
     add_bench(app, chosen);
     add_validate(app, chosen);
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "boundary/build.hpp"
 #include "grainray/neighbors.hpp"
 
 namespace grainray::cli {
@@ -73,6 +74,42 @@ void find_planes(const Scene& scene, const InitialState& s, Overlaps& found) {
     }
 }
 
+/// A particle whose centre has passed a mesh belongs to its other side, so no overlap with a mesh is above the radius.
+void find_surfaces(const Scene& scene, const InitialState& s, Overlaps& found) {
+    if (scene.meshes.empty() && !scene.terrain) return;
+    const Box box = *bounds(s);
+    const PositionScale scale{1, (box.lower + box.upper) * 0.5};
+    Facets facets(Device::cpu);
+    build_facets(scene, scale, facets);
+    place_facets(scene, scale, 0, 1, facets);
+    const FacetShapes shapes = shapes_of(facets);
+    for (std::uint32_t q = 0; q < facets.count(); ++q) {
+        const Surface& surface = shapes.surfaces[q];
+        for (std::uint32_t i = 0; i < s.size(); ++i) {
+            const Vec3d x = facets.now.data()[q].into(s.positions[i] - scale.origin);
+            double deepest = 0, area = 0, depth = 0;
+            shapes.for_each_near(q, x, s.radii[i], [&](std::uint32_t id) {
+                const Section at = section(shapes.facet(surface, id), x, s.radii[i]);
+                const double distance = surface.terrain ? at.distance : std::fabs(at.distance);
+                const double part = at.rim ? 0 : at.share * (s.radii[i] - at.distance) * (s.radii[i] + at.distance);
+                area += part;
+                depth += part * (s.radii[i] - distance);
+                if (part > 0 && at.share > 0.5f) deepest = std::max(deepest, s.radii[i] - distance);
+            });
+            if (area > 0) deepest = std::max(deepest, depth / area);
+            if (!(deepest > 0)) continue;
+            ++found.with_surfaces;
+            const double ratio = deepest / s.radii[i];
+            const std::string what = surface.terrain ? "the terrain" : "mesh '" + scene.meshes[q].name + "'";
+            if (!found.worst_surface || ratio > found.worst_surface->ratio) found.worst_surface = {i, what, deepest, ratio};
+        }
+    }
+    if (!scene.terrain) return;
+    const ElevationGrid ground = load_ground(scene);
+    for (std::uint32_t i = 0; i < s.size() && !found.below_terrain; ++i)
+        if (ground.height(s.positions[i].x, s.positions[i].y) > s.positions[i].z) found.below_terrain = i;
+}
+
 }  // namespace
 
 std::optional<Box> bounds(const InitialState& s) {
@@ -91,6 +128,7 @@ Overlaps initial_overlaps(const Scene& scene, const InitialState& s) {
     if (s.size() == 0) return found;
     find_pairs(scene, s, found);
     find_planes(scene, s, found);
+    find_surfaces(scene, s, found);
     return found;
 }
 

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 
 #include "grainray/scene.hpp"
 
@@ -17,8 +18,15 @@ struct PlaneOverlap {
     std::size_t plane;
     double overlap, ratio;  ///< m; over the radius
 };
+struct SurfaceOverlap {
+    std::uint32_t particle;
+    std::string surface;    ///< "mesh 'NAME'" or "the terrain"
+    double overlap, ratio;  ///< m; over the radius
+};
 struct Overlaps {
-    std::uint64_t pairs = 0, with_planes = 0;
+    std::uint64_t pairs = 0, with_planes = 0, with_surfaces = 0;
+    std::optional<SurfaceOverlap> worst_surface;
+    std::optional<std::uint32_t> below_terrain;  ///< a particle whose centre lies under the ground
     std::optional<PairOverlap> worst_pair;
     std::optional<PlaneOverlap> worst_plane;
 };

@@ -73,6 +73,38 @@ void inspect_overlaps(const Scene& scene, Preflight& p) {
     }
 }
 
+void inspect_surface_overlaps(const Scene& scene, Preflight& p) {
+    if (const auto& i = p.overlaps.below_terrain)
+        refuse(p, fmt::format("particle {} starts under the ground; lift it, or move the terrain", *i));
+    const auto& w = p.overlaps.worst_surface;
+    if (!w || w->ratio <= risky_overlap) return;
+    const std::string text = fmt::format("particle {} starts {:.4g} m inside {}, {:.3g} of its radius", w->particle, w->overlap, w->surface, w->ratio);
+    if (w->ratio > scene.limits.overlap) refuse(p, fmt::format("{}, past limits.overlap = {:.4g}; move it", text, scene.limits.overlap));
+    else warn(p, text + ": it will fly off");
+}
+
+double largest_extent(const Box& box) { return std::max({box.extent().x, box.extent().y, box.extent().z}); }
+
+void inspect_meshes(const Scene& scene, const InitialState& s, Preflight& p) {
+    const std::optional<Box> world = scene.domain.box ? scene.domain.box : bounds(s);
+    for (const Mesh& mesh : scene.meshes) {
+        MeshReport r;
+        load_mesh(scene, mesh, &r);
+        const std::string key = "meshes." + mesh.name;
+        if (r.degenerate || r.duplicates)
+            note(p, fmt::format("{}.file: {} triangles without area and {} duplicates are left out", key, r.degenerate, r.duplicates));
+        if (r.reversed) note(p, fmt::format("{}.file: {} triangles face the other way than their neighbours; they are turned over", key, r.reversed));
+        if (r.slivers) warn(p, fmt::format("{}.file: {} triangles are slivers, a thousand times as long as high; mesh the surface anew", key, r.slivers));
+        if (r.crowded_edges) warn(p, fmt::format("{}.file: {} edges belong to three triangles or more, so one side of the surface cannot be told from the other there", key, r.crowded_edges));
+        if (r.parts > 10 && r.free_edges > r.triangles)
+            warn(p, fmt::format("{}.file is a soup of {} pieces with {} free edges: its triangles do not share corners; merge them in a mesh program", key, r.parts, r.free_edges));
+        const double size = largest_extent(r.bounds), there = world ? largest_extent(*world) : 0;
+        if (there > 0 && (size > 300 * there || size < there / 300))
+            warn(p, fmt::format("mesh '{}' is {:.3g} m large and {} {:.3g} m; if its file is in other units than metres, give {}.scale (0.001 for millimetres)", mesh.name, size,
+                                scene.domain.box ? "the domain" : "what the particles take up", there, key));
+    }
+}
+
 void inspect_speeds(const Scene& scene, const InitialState& s, Preflight& p) {
     if (s.velocities.empty()) return;
     const double smallest = *std::min_element(s.radii.begin(), s.radii.end());
@@ -123,6 +155,7 @@ Preflight inspect(const Scene& scene, const InitialState& s, const RunRange& ran
     p.needs = forecast(scene, static_cast<double>(s.size()), range.last(scene) - range.first);
     if (!range.asked) inspect_duration(scene, p);
     inspect_intervals(scene, p);
+    inspect_meshes(scene, s, p);
     if (s.size() == 0) {
         warn(p, "the scene has no particles: nothing will move");
         return p;
@@ -132,6 +165,7 @@ Preflight inspect(const Scene& scene, const InitialState& s, const RunRange& ran
     if (!range.restarted) {
         p.overlaps = initial_overlaps(scene, s);
         inspect_overlaps(scene, p);
+        inspect_surface_overlaps(scene, p);
         inspect_speeds(scene, s, p);
     }
     inspect_memory(p);

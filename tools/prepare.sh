@@ -13,7 +13,7 @@ fail() {
 readonly LIBRARY_PACKAGES=(
     "libtbb-dev:threads" "libtomlplusplus-dev:reading scenes" "libcli11-dev:the command line" "libfmt-dev:messages"
     "nlohmann-json3-dev:summary.json" "zlib1g-dev:compressed frames" "libpng-dev:pictures" "libhdf5-dev:checkpoints"
-    "libembree-dev:ray tracing on the CPU"
+    "libembree-dev:ray tracing on the CPU" "libassimp-dev:meshes"
 )
 
 package_installed() { [ "$(dpkg-query -W -f '${db:Status-Status}' "$1" 2>/dev/null)" = installed ]; }

@@ -64,19 +64,27 @@ void write_table(const scene::Table& table, const std::string& path, std::string
 
 Value* find(Value& parent, const std::string& key) { return const_cast<Value*>(std::as_const(parent).find(key)); }
 
-/// Makes the CSV paths of particle groups absolute; true where one changed.
+/// Makes one path absolute; true where it changed.
+bool make_absolute(Value* table, const char* key, const Scene& scene) {
+    Value* path = table ? find(*table, key) : nullptr;
+    auto* text = path ? std::get_if<std::string>(&path->data) : nullptr;
+    if (!text || std::filesystem::path(*text).is_absolute()) return false;
+    *text = std::filesystem::absolute(scene.file.parent_path() / *text).lexically_normal().string();
+    return true;
+}
+
+/// Makes the paths of all files that the scene reads absolute; true where one changed.
 bool make_paths_absolute(Value& document, const Scene& scene) {
     bool changed = false;
-    Value* groups = find(document, "particles");
-    for (const ParticleGroup& group : scene.particles) {
-        const auto* file = std::get_if<ParticleFile>(&group.placement);
-        Value* table = file && groups ? find(*groups, group.name) : nullptr;
-        Value* path = table ? find(*table, "path") : nullptr;
-        auto* text = path ? std::get_if<std::string>(&path->data) : nullptr;
-        if (!text || std::filesystem::path(*text).is_absolute()) continue;
-        *text = std::filesystem::absolute(scene.file.parent_path() / *text).lexically_normal().string();
-        changed = true;
+    for (const char* parent : {"particles", "planes", "meshes"}) {
+        Value* tables = find(document, parent);
+        for (const Entry& e : tables && tables->table() ? *tables->table() : scene::Table{}) {
+            Value* table = find(*tables, e.key);
+            for (const char* key : {"path", "file", "polygon"}) changed = make_absolute(table, key, scene) || changed;
+            changed = make_absolute(find(*table, "motion"), "path", scene) || changed;
+        }
     }
+    for (const char* key : {"after", "before"}) changed = make_absolute(find(document, "terrain"), key, scene) || changed;
     return changed;
 }
 

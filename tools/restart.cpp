@@ -67,6 +67,13 @@ private:
             add(table + "count", fmt::format("{}", fill->count));
             add(table + "solid_fraction", fill->solid_fraction);
         }
+        if (const auto* release = std::get_if<Release>(&g.placement)) {
+            add(table + "spacing", release->spacing);
+            add(table + "count", fmt::format("{}", release->count));
+            add(table + "jitter", release->jitter);
+            add(table + "radius", release->radius);
+            add(table + "thickness", release->thickness);
+        }
         add_size(table, g.size);
     }
 
@@ -108,6 +115,19 @@ private:
             add_contact(fmt::format("pairs ({} with {}) ", a, b), row);
         }
         for (const Plane& plane : s.planes) add_plane("planes." + plane.name + '.', plane);
+        for (const Mesh& mesh : s.meshes) add_mesh("meshes." + mesh.name + '.', mesh);
+        if (!s.terrain) return;
+        add("terrain.material", s.terrain->material);
+        add("terrain.smooth", fmt::format("{}", s.terrain->smooth));
+        add("terrain.edge", fmt::format("{}", static_cast<int>(s.terrain->edge)));
+    }
+
+    void add_mesh(const std::string& table, const Mesh& m) {
+        add(table + "material", m.material);
+        add(table + "scale", m.scale);
+        add(table + "rotation", m.rotation);
+        add(table + "translation", m.translation);
+        add_motion(table, m.motion);
     }
 
     template <class Values>
@@ -123,12 +143,16 @@ private:
         add(table + "material", p.material);
         add(table + "point", p.point);
         add(table + "normal", p.normal);
-        const Motion& m = p.motion;
+        add_motion(table, p.motion);
+    }
+
+    void add_motion(const std::string& table, const Motion& m) {
         add(table + "motion.velocity", m.velocity);
         add(table + "motion.rotation", std::vector<Vec3d>{m.rotation_axis, m.rotation_point, {m.rotation_rate, 0, 0}});
         add(table + "motion.oscillation", std::vector<Vec3d>{m.oscillation_amplitude, {m.oscillation_frequency, m.oscillation_phase, 0}});
         add(table + "motion.start", m.start);
         add(table + "motion.stop", m.stop);
+        for (const Waypoint& w : m.path) add(table + fmt::format("motion.path at {} s", w.time), w.shift);
     }
 
     std::map<std::string, std::string> all_;
@@ -183,7 +207,8 @@ std::string key_list(std::vector<std::string> keys) {
 
 void require_fit(const Scene& scene, const InitialState& particles, const Checkpoint& c, const fs::path& file) {
     const auto reject = [&](const std::string& why) { throw InputError(fmt::format("--restart {}: {}", file.string(), why)); };
-    if (c.id.size() != particles.size())
+    const bool may_lose = scene.terrain && scene.terrain->edge == TerrainEdge::open && c.id.size() < particles.size();
+    if (c.id.size() != particles.size() && !may_lose)
         reject(fmt::format("it holds {} particles and the scene {}; give the scene it was made with (scene.toml beside it)", c.id.size(), particles.size()));
     if (c.dt != scene.dt)
         reject(fmt::format("its time step is {} s and the scene's {} s; restart with the same one: --set simulation.dt={}", c.dt, scene.dt, c.dt));

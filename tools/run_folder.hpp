@@ -15,6 +15,7 @@ public:
     const std::filesystem::path& path() const { return folder_; }
     std::filesystem::path scene() const { return folder_ / "scene.toml"; }
     std::filesystem::path history() const { return folder_ / "history.csv"; }
+    std::filesystem::path lost() const { return folder_ / "lost.csv"; }
     std::filesystem::path checkpoint() const { return folder_ / "checkpoint.h5"; }
     std::filesystem::path summary() const { return folder_ / "summary.json"; }
     std::filesystem::path frame(std::uint64_t index) const;

@@ -37,16 +37,33 @@ std::uint64_t whole_steps(double interval, double dt) {
     return std::max<std::uint64_t>(1, static_cast<std::uint64_t>(std::llround(steps)));
 }
 
-const std::vector<std::string> history_columns{
+const std::vector<std::string> lost_columns{"time", "step", "id", "x", "y", "z", "velocity_x", "velocity_y", "velocity_z"};
+
+/// Force and torque on each mesh and the terrain come last.
+std::vector<std::string> history_columns(const Scene& scene) {
+    std::vector<std::string> columns{
     "time",       "kinetic_translation", "kinetic_rotation",  "potential",    "momentum_x", "momentum_y",
     "momentum_z", "max_overlap_ratio",   "coordination",      "mean_neighbors", "front_99", "max_speed",
     "angular_momentum_x", "angular_momentum_y", "angular_momentum_z", "contacts", "particles", "step"};
+    std::vector<std::string> surfaces;
+    for (const Mesh& mesh : scene.meshes) surfaces.push_back(mesh.name);
+    if (scene.terrain) surfaces.push_back("terrain");
+    for (std::string name : surfaces) {
+        std::replace(name.begin(), name.end(), ',', '_');
+        for (const char* what : {"force", "torque"})
+            for (const char axis : {'x', 'y', 'z'}) columns.push_back(fmt::format("{}_{}_{}", name, what, axis));
+    }
+    return columns;
+}
 
 std::vector<double> history_row(const Statistics& s, std::size_t particles) {
-    return {s.time,       s.kinetic_translation, s.kinetic_rotation, s.potential,      s.momentum.x, s.momentum.y,
+    std::vector<double> row{s.time,       s.kinetic_translation, s.kinetic_rotation, s.potential,      s.momentum.x, s.momentum.y,
             s.momentum.z, s.max_overlap_ratio,   s.coordination,     s.mean_neighbors, s.front_99,   s.max_speed,
             s.angular_momentum.x, s.angular_momentum.y, s.angular_momentum.z, static_cast<double>(s.contacts),
             static_cast<double>(particles), static_cast<double>(s.step)};
+    for (const SurfaceLoad& load : s.surfaces)
+        for (const Vec3d& v : {load.force, load.torque}) row.insert(row.end(), {v.x, v.y, v.z});
+    return row;
 }
 
 }  // namespace
@@ -68,8 +85,10 @@ RunPlan plan_run(const Scene& scene, std::uint64_t first, std::uint64_t last, bo
 
 RunLoop::RunLoop(Simulation& simulation, const Scene& scene, const RunFolder& folder, const RunPlan& plan, bool quiet)
     : simulation_(simulation), scene_(scene), folder_(folder), plan_(plan), progress_(quiet, plan.first, plan.last),
-      history_(folder.history(), history_columns, plan.appends, simulation.time()),
-      asked_checkpoint_(plan.has_checkpoint ? plan.first : no_step), written_checkpoint_(asked_checkpoint_) {}
+      history_(folder.history(), history_columns(scene), plan.appends, simulation.time()),
+      asked_checkpoint_(plan.has_checkpoint ? plan.first : no_step), written_checkpoint_(asked_checkpoint_) {
+    if (scene.terrain && scene.terrain->edge == TerrainEdge::open) lost_.emplace(folder.lost(), lost_columns, plan.appends, simulation.time());
+}
 
 bool RunLoop::run() {
     try {
@@ -88,6 +107,7 @@ bool RunLoop::run_to_end() {
     else folder_.remove_frames_after(plan_.frames ? plan_.first / plan_.frames : 0);
     while (simulation_.step_count() < plan_.last && !signals_.asked()) {
         advance(next_stop());
+        write_lost();
         queue_.check();
         look(due_now());
         progress_.update(simulation_);
@@ -95,6 +115,14 @@ bool RunLoop::run_to_end() {
     if (simulation_.step_count() == plan_.last) return true;
     look(checkpoint);
     return false;
+}
+
+/// At once, so that the list is whole whenever a checkpoint is written.
+void RunLoop::write_lost() {
+    for (const auto& all = simulation_.lost(); lost_ && lost_written_ < all.size(); ++lost_written_) {
+        const LostParticle& p = all[lost_written_];
+        lost_->row({p.time, static_cast<double>(p.step), static_cast<double>(p.id), p.position.x, p.position.y, p.position.z, p.velocity.x, p.velocity.y, p.velocity.z});
+    }
 }
 
 std::uint64_t RunLoop::next_stop() const {

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "grainray/output.hpp"
@@ -47,6 +48,7 @@ private:
     void write_out(const Output&);
     std::uint64_t next_stop() const;
     void advance(std::uint64_t limit);
+    void write_lost();
 
     Simulation& simulation_;
     const Scene& scene_;
@@ -55,6 +57,8 @@ private:
     StopSignals signals_;
     Progress progress_;
     HistoryFile history_;
+    std::optional<HistoryFile> lost_;  ///< of an open terrain; of the stepping thread alone
+    std::size_t lost_written_ = 0;
     double seconds_per_step_ = 0;
     std::uint64_t asked_checkpoint_, written_checkpoint_;  ///< steps; the second belongs to the writing thread
     OutputQueue queue_;  // last: its jobs use the others

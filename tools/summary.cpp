@@ -42,6 +42,7 @@ std::string summary_text(const Simulation& simulation, const Scene& scene, const
     json["threads"] = facts.threads;
     json["method"] = scene.method;
     json["particles"] = simulation.size();
+    if (scene.terrain) json["particles_lost"] = simulation.lost().size();
     json["dt"] = scene.dt;
     json["steps"] = steps;
     json["step"] = simulation.step_count();

@@ -49,6 +49,7 @@ struct Checkpoint {
     double time = 0, dt = 0;
     double unit = 0;                          ///< metres per fixed-point position unit
     Vec3d origin;                             ///< world position of fixed-point zero, m
+    double largest_radius = 0;                ///< of all particles there ever were, m
     std::uint64_t state_hash = 0;
     std::vector<std::uint32_t> id, material;
     std::vector<Vec3l> position;              ///< fixed point
@@ -59,6 +60,9 @@ struct Checkpoint {
     std::vector<Vec3f> contact_history;               ///< tangential elastic force on a, N
     std::vector<std::uint32_t> wall_particle, wall_plane;
     std::vector<Vec3f> wall_history;
+    std::vector<std::uint32_t> facet_particle, facet; ///< particle ids, ascending, and facets they touch (boundary/facets.hpp)
+    std::vector<float> facet_side;
+    std::vector<Vec3f> facet_history;
     std::string scene;                        ///< text of the scene it belongs to
 };
 

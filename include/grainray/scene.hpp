@@ -10,7 +10,7 @@
 #include <variant>
 #include <vector>
 
-#include "grainray/core.hpp"
+#include "grainray/surfaces.hpp"
 
 namespace grainray {
 
@@ -80,16 +80,32 @@ struct RandomFill {
     double solid_fraction = 0;  ///< 0: until the count is reached
 };
 
+/// What slides: a lattice of equal particles between the ground and a surface above it.
+struct Release {
+    double spacing = 0;                  ///< m; 0: found for the count
+    std::int64_t count = 0;              ///< about so many particles; 0: as the spacing gives
+    double jitter = 0;                   ///< each is shifted by U(0, jitter) along x and y, m
+    double radius = 0;                   ///< m; 0: half of what the jitter leaves of the spacing
+    std::filesystem::path polygon_file;  ///< CSV with columns x y, or GeoJSON; empty: the surface is terrain.before
+    double thickness = 0;                ///< with a polygon: height of the surface over the ground, m
+};
+
 /// A named group of particles of one material.
 struct ParticleGroup {
     std::string name;
     std::string material;
-    std::variant<Lattice, ParticleList, ParticleFile, RandomFill> placement;
+    std::variant<Lattice, ParticleList, ParticleFile, RandomFill, Release> placement;
     SizeDistribution size;
     Vec3d velocity, angular_velocity;
 };
 
-/// How a plane moves between start and stop; the plane stands still before and after (and keeps where it got to).
+/// A place on the way of a boundary that follows a table.
+struct Waypoint {
+    double time = 0;  ///< s after the start of the motion
+    Vec3d shift;      ///< from where the boundary was placed, m
+};
+
+/// How a boundary moves between start and stop; it stands still before and after (and keeps where it got to).
 struct Motion {
     Vec3d velocity;                        ///< constant, m/s
     Vec3d rotation_axis, rotation_point;   ///< unit axis and a point on it
@@ -97,8 +113,10 @@ struct Motion {
     Vec3d oscillation_amplitude;           ///< m: shift = amplitude sin(2 pi f (t - start) + phase) - its value at start
     double oscillation_frequency = 0;      ///< Hz
     double oscillation_phase = 0;          ///< rad
+    std::filesystem::path path_file;       ///< CSV with the columns t x y z; empty: none
+    std::vector<Waypoint> path;            ///< its rows, ascending in time: straight between them, still before and after
     double start = 0, stop = std::numeric_limits<double>::infinity();  ///< s
-    bool moves() const { return velocity != Vec3d{} || rotation_rate != 0 || oscillation_frequency != 0; }
+    bool moves() const { return velocity != Vec3d{} || rotation_rate != 0 || oscillation_frequency != 0 || path.size() > 1; }
 };
 
 /// A half-space boundary: particles live where normal . (x - point) > 0.
@@ -107,6 +125,33 @@ struct Plane {
     std::string material;
     Vec3d point, normal{0, 0, 1};  ///< normal has unit length after loading
     Motion motion;
+};
+
+/// A boundary of triangles. Both of its sides are solid: a particle belongs to the side from which it came.
+struct Mesh {
+    std::string name;
+    std::string material;
+    std::filesystem::path file;             ///< STL or OBJ
+    double scale = 1;                       ///< metres a unit of the file
+    Vec3d rotation;                         ///< about the x, then the y, then the z axis of the file, rad
+    Vec3d translation;                      ///< after scaling and turning, m
+    Motion motion;
+    std::optional<TriangleMesh> geometry;   ///< given by a program instead of a file
+};
+
+enum class TerrainEdge {
+    open,   ///< particles leave the grid and are removed
+    walled, ///< upright planes stand round it
+};
+
+/// The ground as a grid of elevations. Particles live above it.
+struct Terrain {
+    std::string material;
+    std::filesystem::path after_file;       ///< the ground
+    std::filesystem::path before_file;      ///< the surface before the slide; empty: none
+    std::int64_t smooth = 1;                ///< every cell is cut into smooth x smooth, by cubic interpolation
+    TerrainEdge edge = TerrainEdge::open;
+    std::optional<ElevationGrid> after, before;  ///< given by a program instead of files
 };
 
 struct Domain {
@@ -174,6 +219,8 @@ struct Scene {
     std::vector<PairRow> pairs;
     std::vector<ParticleGroup> particles;
     std::vector<Plane> planes;
+    std::vector<Mesh> meshes;
+    std::optional<Terrain> terrain;
     std::uint64_t steps() const { return static_cast<std::uint64_t>(std::llround(duration / dt)); }
 };
 
@@ -197,6 +244,27 @@ std::string schema_text();
 
 /// Contact parameters of material a with b; boundary_b: b belongs to a plane. Applies the pair table, then the mixing rule.
 MaterialPair contact_parameters(const Scene&, std::size_t a, std::size_t b, bool boundary_b);
+
+/// Triangles of a mesh, scaled and turned but not shifted by its translation: clean (see MeshReport) and facing the same
+/// way where they share edges. Throws InputError where the file cannot be read or holds no triangle.
+TriangleMesh load_mesh(const Scene&, const Mesh&, MeshReport* = nullptr);
+/// The ground, refined where the scene asks for it. Throws InputError.
+ElevationGrid load_ground(const Scene&);
+/// The surface before the slide, refined as the ground. Throws InputError where its nodes are not those of the ground.
+ElevationGrid load_surface_before(const Scene&);
+
+/// How far a motion has got at time t: a point x has gone to point + shift + (x - point) turned by `angle` about `axis`,
+/// where point is rotation_point.
+struct MotionState {
+    Vec3d shift;
+    double angle = 0;
+    Vec3d velocity, angular_velocity;  ///< of the point, and about it
+};
+MotionState motion_at(const Motion&, double time);
+/// A vector turned by an angle about a unit axis.
+Vec3d turned(const Vec3d&, const Vec3d& axis, double angle);
+/// Bound on the speed of the point `rotation_point` at any time, m/s.
+double greatest_speed(const Motion&);
 
 /// Where a plane is at time t and how it moves there.
 struct PlaneState {

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "grainray/device.hpp"
 #include "grainray/output.hpp"
@@ -30,6 +31,14 @@ struct SearchReport {
     double mean_margin_ratio = 0;  ///< mean margin / radius at the last rebuild
 };
 
+/// What the particles do to a mesh or the terrain at one instant.
+struct SurfaceLoad {
+    std::string name;
+    Vec3d force;                ///< N
+    Vec3d torque;               ///< about the point its motion turns about (the scene's origin without one), N m
+    std::uint64_t contacts = 0; ///< particles that touch it
+};
+
 /// Whole-system figures at one instant.
 struct Statistics {
     std::uint64_t step = 0;
@@ -44,7 +53,17 @@ struct Statistics {
     Vec3d lower, upper;                                    ///< bounds of the sphere surfaces, m
     double front_99 = 0;                                   ///< 99th percentile of the centres' x, m
     double mean_neighbors = 0;
-    std::uint64_t contacts = 0;                            ///< touching pairs, planes included
+    std::uint64_t contacts = 0;                            ///< touching pairs, planes, meshes and terrain included
+    std::vector<SurfaceLoad> surfaces;                     ///< meshes in the order of the scene, then the terrain
+};
+
+/// A particle that left an open terrain and was taken out.
+struct LostParticle {
+    std::uint64_t step = 0;  ///< after which it was taken out
+    double time = 0;         ///< s
+    std::uint32_t id = 0;
+    Vec3d position;          ///< m
+    Vec3f velocity;          ///< m/s
 };
 
 struct SimulationOptions {
@@ -72,6 +91,9 @@ public:
     double dt() const;
     Device device() const;
 
+    /// Particles taken out since this object was made, in the order in which they went.
+    const std::vector<LostParticle>& lost() const;
+
     Statistics statistics() const;
     Frame frame() const;
     Checkpoint checkpoint() const;
@@ -90,6 +112,7 @@ public:
 private:
     struct Impl;
     std::unique_ptr<Impl> impl_;
+    void take_out_lost();
 };
 
 /// Result of `grainray check`.

@@ -12,6 +12,13 @@ namespace {
 
 constexpr unsigned step_threads = 128;
 
+__device__ inline void add_to(Wrench& sum, const Wrench& more) {
+    for (int a = 0; a < 3; ++a) {
+        sum.force[a] += more.force[a];
+        sum.torque[a] += more.torque[a];
+    }
+}
+
 template <class Law>
 struct FusedStep {
     Law law;
@@ -25,6 +32,8 @@ struct FusedStep {
     const Near* __restrict__ built;
     const Vec3f* __restrict__ frame;
     std::uint32_t* flags;
+    const std::uint32_t* __restrict__ facet_rows;   // null without meshes and terrain
+    const Wrench* __restrict__ facet_forces;
     double fine;
     std::uint32_t size, age;
     bool planes_move;
@@ -33,6 +42,7 @@ struct FusedStep {
         : law(contact_law), pairs(s, s.only_parameters), planes(s, contact_law), motion(s, constants, trigger), near(s.next_near.data()),
           far(s.next_far.size() ? s.next_far.data() : s.particles.far.data()), body(s.next_body.data()),
           remainder(s.particles.remainder.data()), built(s.built.data()), frame(s.frame.data()), flags(s.flags.data()),
+          facet_rows(s.facets.count() ? s.facets.list.row_of.data() : nullptr), facet_forces(s.facets.list.forces.data()),
           fine(s.particles.scale.fine()), size(static_cast<std::uint32_t>(s.size())), age(s.age.steps),
           planes_move(s.planes.size() > s.plane_count) {}
 
@@ -45,6 +55,7 @@ struct FusedStep {
         pairs.add<periodic>(law, i, p, f, b, sum);
         if (planes.offsets[i] != planes.offsets[i + 1])
             planes.add(i, convert<double>(join(p, f)) * fine, p.radius, b, planes_move ? std::size_t{step} * planes.plane_count : 0, sum);
+        if (facet_rows && facet_rows[i] != ~0u) add_to(sum, facet_forces[facet_rows[i]]);
         Vec3f left = remainder[i];
         const bool finite = motion.advance(sum, p, f, b, left);
         near[i] = p;
@@ -72,9 +83,10 @@ void swap_state(State& s) {
 }
 
 template <bool periodic, class Law>
-void launch(State& s, const Law& law, const StepConstants& constants, float trigger, std::uint32_t steps) {
+void launch(State& s, ContactLaw name, const Law& law, const StepConstants& constants, float trigger, std::uint32_t steps) {
     const unsigned blocks = static_cast<unsigned>((s.size() + step_threads - 1) / step_threads);
     for (std::uint32_t step = 0; step < steps; ++step) {
+        if (s.facets.count()) facets(s, name, constants, step, FacetTarget::rows);
         step_kernel<periodic><<<blocks, step_threads>>>(FusedStep<Law>(s, law, constants, trigger), step);
         swap_state(s);
     }
@@ -89,8 +101,8 @@ std::uint32_t fused(State& s, ContactLaw law, const StepConstants& constants, fl
     s.next_body.resize_discard(s.size());
     if (periodic) s.next_far.resize_discard(s.size());
     with_law(law, constants.dt, [&](auto functor) {
-        if (periodic) launch<true>(s, functor, constants, trigger, steps);
-        else launch<false>(s, functor, constants, trigger, steps);
+        if (periodic) launch<true>(s, law, functor, constants, trigger, steps);
+        else launch<false>(s, law, functor, constants, trigger, steps);
     });
     std::uint32_t stop = 0;
     check(cudaMemcpy(&stop, s.flags.data(), sizeof stop, cudaMemcpyDeviceToHost), "step");

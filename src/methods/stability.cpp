@@ -94,6 +94,13 @@ std::vector<CriticalStep> critical_steps(const Scene& scene, const InitialState&
                 finder.pair(a, b, contact_parameters(scene, a, b, true), sa.lightest, 0, true, scene.materials[a].name + "-" + scene.materials[b].name + " plane");
                 break;
             }
+        const auto surface = [&](const std::string& material, const std::string& what) {
+            for (std::size_t b = 0; b < scene.materials.size(); ++b)
+                if (scene.materials[b].name == material)
+                    finder.pair(a, b, contact_parameters(scene, a, b, true), sa.lightest, 0, true, scene.materials[a].name + "-" + material + " " + what);
+        };
+        for (const Mesh& mesh : scene.meshes) surface(mesh.material, "mesh " + mesh.name);
+        if (scene.terrain) surface(scene.terrain->material, "terrain");
     }
     std::stable_sort(finder.found.begin(), finder.found.end(), [](const auto& x, const auto& y) { return x.critical_dt < y.critical_dt; });
     return finder.found;

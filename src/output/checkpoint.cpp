@@ -221,7 +221,7 @@ Checkpoint read_all(const std::filesystem::path& path) {
     std::uint64_t checksum = 0;
     get_number(file, "checksum", checksum);
     for_each_number(c, [&](const char* name, auto& value) { get_number(file, name, value); });
-    std::optional<std::size_t> length[3];  // of each group
+    std::optional<std::size_t> length[4];  // of each group
     for_each_array(c, [&](const char* name, auto& array, int group) {
         get_array(file, name, array);
         if (array.size() != length[group].value_or(array.size())) throw Hdf5Failure{name};

@@ -10,7 +10,7 @@
 namespace grainray {
 
 /// Raise this when the list below changes: older programs then say so instead of guessing.
-constexpr std::uint32_t checkpoint_version = 1;
+constexpr std::uint32_t checkpoint_version = 2;
 constexpr const char* checkpoint_format = "grainray checkpoint";
 
 /// visit(name, value) for every number of a Checkpoint, const or not.
@@ -21,13 +21,14 @@ void for_each_number(C& c, Visit visit) {
     visit("dt", c.dt);
     visit("unit", c.unit);
     visit("origin", c.origin);
+    visit("largest_radius", c.largest_radius);
     visit("state_hash", c.state_hash);
 }
 
 /// visit(name, array, group) for every array; arrays of one group have one length.
 template <class C, class Visit>
 void for_each_array(C& c, Visit visit) {
-    enum { particles, contacts, walls };
+    enum { particles, contacts, walls, facets };
     visit("id", c.id, particles);
     visit("material", c.material, particles);
     visit("position", c.position, particles);
@@ -43,6 +44,10 @@ void for_each_array(C& c, Visit visit) {
     visit("wall_particle", c.wall_particle, walls);
     visit("wall_plane", c.wall_plane, walls);
     visit("wall_history", c.wall_history, walls);
+    visit("facet_particle", c.facet_particle, facets);
+    visit("facet", c.facet, facets);
+    visit("facet_side", c.facet_side, facets);
+    visit("facet_history", c.facet_history, facets);
 }
 
 /// 64-bit checksum: each 8 bytes are mixed in by a bijection, so that a change of one word always shows.

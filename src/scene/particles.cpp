@@ -55,6 +55,20 @@ RandomFill read_fill(const Node& table, const Scene& s) {
     return {{row.lower, row.upper}, row.count.value_or(0), row.solid_fraction.value_or(0)};
 }
 
+Release read_release(const Node& table, const Scene& s) {
+    ReleaseRow row;
+    read_fields(table, schema().release, row);
+    if (row.spacing && row.count) fail_key(table, "count", "give spacing or count, not both");
+    if (!row.spacing && !row.count) fail_key(table, "spacing", "a release needs one of spacing and count (a typical value is 0.74 m)");
+    if (row.spacing && row.jitter >= *row.spacing) fail_key(table, "jitter", fmt::format("must be less than the spacing ({} m)", *row.spacing));
+    if (!s.terrain) fail_key(table, "type", "a release lies on terrain; add a table [terrain] with the ground");
+    if (row.polygon.has_value() != row.thickness.has_value())
+        fail_key(table, row.polygon ? "polygon" : "thickness", fmt::format("a layer needs both outline and thickness; add '{}'", row.polygon ? "thickness" : "polygon"));
+    if (!row.polygon && s.terrain->before_file.empty())
+        fail_key(table, "type", "needs terrain.before, the surface before the slide, or polygon and thickness here");
+    return {row.spacing.value_or(0), row.count.value_or(0), row.jitter, row.radius.value_or(0), row.polygon.value_or(""), row.thickness.value_or(0)};
+}
+
 /// Cut-offs that the scene does not give: three deviations, in the logarithm for a log-normal law.
 void default_cutoffs(SizeRow& row) {
     if (row.law == SizeLaw::normal) {
@@ -104,6 +118,7 @@ void check_group_keys(const Node& table, const PlacementRow& placement, const Si
         case Placement::list: append_keys(known, schema().list); break;
         case Placement::file: append_keys(known, schema().file); break;
         case Placement::fill: append_keys(known, schema().fill); break;
+        case Placement::release: append_keys(known, schema().release); break;
     }
     if (placement.type == Placement::lattice || placement.type == Placement::fill) {
         append_keys(known, schema().size);
@@ -130,6 +145,7 @@ ParticleGroup read_group(const Node& table, const std::string& name, const Scene
         case Placement::lattice: group.placement = read_lattice(table); break;
         case Placement::list: group.placement = read_list(table); break;
         case Placement::fill: group.placement = read_fill(table, s); break;
+        case Placement::release: group.placement = read_release(table, s); break;
         case Placement::file: {
             FileRow row;
             read_fields(table, schema().file, row);

@@ -73,6 +73,7 @@ void place_group(const Scene& scene, const ParticleGroup& group, InitialState& s
     if (const auto* lattice = std::get_if<Lattice>(&group.placement)) place_lattice(scene, group, *lattice, state);
     else if (const auto* list = std::get_if<ParticleList>(&group.placement)) place_list(*list, state);
     else if (const auto* file = std::get_if<ParticleFile>(&group.placement)) place_file(scene, group, *file, state);
+    else if (const auto* release = std::get_if<Release>(&group.placement)) place_release(scene, group, *release, state);
     else place_fill(scene, group, std::get<RandomFill>(group.placement), state);
     if (state.size() > std::size_t{1} << 31)
         throw InputError(fmt::format("{}: {} particles are too many; at most 2^31 = 2147483648", place_of(scene, group),

@@ -29,6 +29,7 @@ private:
 
 /// Appends the particles of one group: positions and radii, and velocities where the placement gives them.
 void place_fill(const Scene&, const ParticleGroup&, const RandomFill&, InitialState&);
+void place_release(const Scene&, const ParticleGroup&, const Release&, InitialState&);
 void place_file(const Scene&, const ParticleGroup&, const ParticleFile&, InitialState&);
 
 /// "scene.toml: key 'particles.NAME.field'", for errors that only placing finds.

@@ -14,5 +14,9 @@ void check_material(const Node& where, const std::string& name, const Scene&);
 
 ParticleGroup read_group(const Node&, const std::string& name, const Scene&);
 Plane read_plane(const Node&, const std::string& name, const Scene&);
+Mesh read_mesh(const Node&, const std::string& name, const Scene&);
+Terrain read_terrain(const Node&, const Scene&);
+/// The table `motion` of a boundary's table.
+Motion read_motion(const Node& boundary, const Scene&);
 
 }  // namespace grainray::scene

@@ -104,13 +104,25 @@ void read_pairs(const Node& root, Scene& s) {
 /// Everything a scene may hold at the top.
 void check_top(const Node& root) {
     std::vector<std::string_view> known{"simulation", "domain",    "contact", "search",    "output", "limits",
-                                        "render",     "materials", "pairs",   "particles", "planes"};
+                                        "render",     "materials", "pairs",   "particles", "planes", "meshes", "terrain"};
     append_keys(known, schema().top);
     check_keys(root, std::move(known));
 }
 
-Scene read_scene(const Node& root) {
+/// Upright planes at the outermost nodes, after all others, so that the numbers of those stay.
+void wall_terrain(Scene& s) {
+    const ElevationGrid g = load_ground(s);
+    const double east = g.x + g.dx * static_cast<double>(g.columns - 1), north = g.y + g.dy * static_cast<double>(g.rows - 1);
+    const std::string& material = s.terrain->material;
+    s.planes.push_back({"terrain west", material, {g.x, g.y, 0}, {1, 0, 0}, {}});
+    s.planes.push_back({"terrain east", material, {east, g.y, 0}, {-1, 0, 0}, {}});
+    s.planes.push_back({"terrain south", material, {g.x, g.y, 0}, {0, 1, 0}, {}});
+    s.planes.push_back({"terrain north", material, {g.x, north, 0}, {0, -1, 0}, {}});
+}
+
+Scene read_scene(const Node& root, const std::filesystem::path& file) {
     Scene s;
+    s.file = file;  // relative paths start there
     check_top(root);
     read_fields(root, schema().top, s);
     read_simulation(root, s);
@@ -123,8 +135,11 @@ Scene read_scene(const Node& root) {
     read_render(root, s);
     read_materials(root, s);
     read_pairs(root, s);
+    if (root.has("terrain")) s.terrain = read_terrain(root.child("terrain"), s);
     for (const auto& [name, node] : named_tables(root, "particles")) s.particles.push_back(read_group(node, name, s));
     for (const auto& [name, node] : named_tables(root, "planes")) s.planes.push_back(read_plane(node, name, s));
+    for (const auto& [name, node] : named_tables(root, "meshes")) s.meshes.push_back(read_mesh(node, name, s));
+    if (s.terrain && s.terrain->edge == TerrainEdge::walled) wall_terrain(s);
     return s;
 }
 
@@ -156,8 +171,7 @@ void check_material(const Node& where, const std::string& name, const Scene& s) 
 Scene parse_scene(const std::string& text, const std::string& name, const std::vector<std::string>& overrides) {
     scene::Value document = scene::parse_document(text, name);
     for (const std::string& setting : overrides) scene::apply_override(document, setting);
-    Scene result = scene::read_scene({&document, document.place, ""});
-    result.file = name;
+    Scene result = scene::read_scene({&document, document.place, ""}, name);
     result.source = text;
     if (!overrides.empty() && !text.empty() && text.back() != '\n') result.source += '\n';
     for (const std::string& setting : overrides) result.source += "# --set " + setting + '\n';

@@ -85,7 +85,7 @@ void add_material_tables(Schema& s) {
 
 void add_particle_tables(Schema& s) {
     s.placement = {"particles.NAME", "A group of particles; its `type` says how they are placed.", {
-        field(&PlacementRow::type, {.key = "type", .text = "how the particles are placed", .choices = {"lattice", "list", "file", "fill"}, .required = true})}};
+        field(&PlacementRow::type, {.key = "type", .text = "how the particles are placed", .choices = {"lattice", "list", "file", "fill", "release"}, .required = true})}};
     s.group = {"particles.NAME, every type", "", {
         field(&ParticleGroup::material, {.key = "material", .text = "name of their material", .required = true}),
         field(&ParticleGroup::velocity, {.key = "velocity", .text = "at the start, where a list or a file gives no other", .unit = unit::speed}),
@@ -107,6 +107,16 @@ void add_particle_tables(Schema& s) {
         field(&FillRow::upper, {.key = "upper", .text = "upper corner of the box", .unit = unit::length, .required = true}),
         field(&FillRow::count, {.key = "count", .text = "number of particles", .range = up_to_2_31, .typical = "20000"}),
         field(&FillRow::solid_fraction, {.key = "solid_fraction", .text = "solid volume over volume of the box", .range = {0, 0.74, true, false}, .typical = "0.25"})}};
+}
+
+void add_release_table(Schema& s) {
+    s.release = {"particles.NAME, type = \"release\"", "What slides: equal particles in rows between the ground and terrain.before, or a layer of a given thickness inside a polygon. Needs one of spacing and count.", {
+        field(&ReleaseRow::spacing, {.key = "spacing", .text = "distance of neighbours; volume over spacing cubed is the number of particles", .unit = unit::length, .range = positive, .typical = "0.74 m"}),
+        field(&ReleaseRow::count, {.key = "count", .text = "about so many particles: the spacing is found for it", .range = {1, 2147483648.0}, .typical = "20000"}),
+        field(&ReleaseRow::jitter, {.key = "jitter", .text = "each particle is shifted along x and y by a random length from 0 to this", .unit = unit::length, .range = non_negative, .typical = "0.05 m"}),
+        field(&ReleaseRow::radius, {.key = "radius", .text = "of every particle", .unit = unit::length, .range = positive, .typical = "0.37 m", .fallback = "(spacing - jitter) / 2"}),
+        field(&ReleaseRow::polygon, {.key = "polygon", .text = "outline of what slides: CSV with the columns x y, or GeoJSON, in the coordinates of the terrain; relative to the scene file", .typical = "\"release.csv\""}),
+        field(&ReleaseRow::thickness, {.key = "thickness", .text = "of the layer inside the polygon, upright", .unit = unit::length, .range = positive, .typical = "2 m"})}};
 }
 
 void add_size_tables(Schema& s) {
@@ -138,18 +148,38 @@ void add_plane_tables(Schema& s) {
         field(&Plane::material, {.key = "material", .text = "name of its material", .required = true}),
         field(&Plane::point, {.key = "point", .text = "a point of the plane", .unit = unit::length}),
         field(&Plane::normal, {.key = "normal", .text = "direction towards the particles, any length"})}};
-    s.motion = {"planes.NAME.motion", "The plane stands still before `start` and, where it has got to, after `stop`.", {
+    s.motion = {"planes.NAME.motion, meshes.NAME.motion", "The boundary stands still before `start` and, where it has got to, after `stop`.", {
         field(&Motion::velocity, {.key = "velocity", .text = "constant velocity", .unit = unit::speed}),
         field(&Motion::start, {.key = "start", .text = "when the motion starts", .unit = unit::time, .range = non_negative, .typical = "0 s"}),
         field(&Motion::stop, {.key = "stop", .text = "when it stops", .unit = unit::time, .range = non_negative, .typical = "5 s", .fallback = "never"})}};
-    s.rotation = {"planes.NAME.motion.rotation", "Turns about an axis; velocity and oscillation carry the axis along.", {
+    s.rotation = {"planes.NAME.motion.rotation, meshes.NAME.motion.rotation", "Turns about an axis; velocity and oscillation carry the axis along.", {
         field(&Motion::rotation_axis, {.key = "axis", .text = "direction of the axis, any length", .typical = "[0, 1, 0]", .required = true}),
         field(&Motion::rotation_point, {.key = "point", .text = "a point of the axis", .unit = unit::length, .typical = "[0, 0, 0]", .required = true}),
         field(&Motion::rotation_rate, {.key = "rate", .text = "right-handed about the axis", .unit = unit::rotation, .typical = "10 rpm", .required = true})}};
-    s.oscillation = {"planes.NAME.motion.oscillation", "Shifts by amplitude (sin(2 pi frequency (t - start) + phase) - sin(phase)).", {
+    s.oscillation = {"planes.NAME.motion.oscillation, meshes.NAME.motion.oscillation", "Shifts by amplitude (sin(2 pi frequency (t - start) + phase) - sin(phase)).", {
         field(&Motion::oscillation_amplitude, {.key = "amplitude", .text = "with direction", .unit = unit::length, .typical = "[0, 0, 0.005]", .required = true}),
         field(&Motion::oscillation_frequency, {.key = "frequency", .text = "periods a second", .unit = unit::frequency, .range = positive, .typical = "10 Hz", .required = true}),
         field(&Motion::oscillation_phase, {.key = "phase", .text = "phase at the start", .unit = unit::angle})}};
+}
+
+void add_surface_tables(Schema& s) {
+    s.motion_path = {"planes.NAME.motion, meshes.NAME.motion, along a table", "", {
+        field(&PathRow::path, {.key = "path", .text = "CSV file with the columns t x y z in SI units: seconds after `start` and the shift from where the boundary was placed; "
+            "straight between rows, still before the first and after the last; relative to the scene file", .typical = "\"path.csv\""})}};
+    s.mesh_file = {"meshes.NAME", "A boundary of triangles. Both sides are solid: a particle stays on the side from which it came.", {
+        field(&MeshRow::file, {.key = "file", .text = "STL (text or binary) or OBJ; relative to the scene file", .typical = "\"funnel.stl\"", .required = true})}};
+    s.mesh = {"meshes.NAME, material and place", "Scaled first, then turned, then shifted.", {
+        field(&Mesh::material, {.key = "material", .text = "name of its material", .required = true}),
+        field(&Mesh::scale, {.key = "scale", .text = "metres a unit of the file; 0.001 for a file in millimetres", .range = positive, .typical = "1"}),
+        field(&Mesh::rotation, {.key = "rotation", .text = "angles about the x, then the y, then the z axis of the world, through the file's origin", .unit = unit::angle, .typical = "[\"90 deg\", 0, 0]"}),
+        field(&Mesh::translation, {.key = "translation", .text = "shift", .unit = unit::length, .typical = "[0, 0, 1]"})}};
+    s.terrain_files = {"terrain", "The ground as a grid of elevations; particles live above it.", {
+        field(&TerrainRow::after, {.key = "after", .text = "file with the ground: an ESRI ASCII grid, or anything GDAL reads where this build has it; relative to the scene file", .typical = "\"after.asc\"", .required = true}),
+        field(&TerrainRow::before, {.key = "before", .text = "file with the surface before the slide, on the same nodes: particles of type \"release\" fill what lies between", .typical = "\"before.asc\""})}};
+    s.terrain = {"terrain, material and shape", "", {
+        field(&Terrain::material, {.key = "material", .text = "name of its material", .required = true}),
+        field(&Terrain::smooth, {.key = "smooth", .text = "1: two facets a cell; n: every cell is first cut into n x n by cubic interpolation, which rounds the edges", .range = {1, 64}, .typical = "4"}),
+        field(&Terrain::edge, {.key = "edge", .text = "open: particles may leave the grid; walled: upright planes stand round it", .choices = {"open", "walled"}})}};
 }
 
 Schema make_schema() {
@@ -158,8 +188,10 @@ Schema make_schema() {
     add_output_tables(s);
     add_material_tables(s);
     add_particle_tables(s);
+    add_release_table(s);
     add_size_tables(s);
     add_plane_tables(s);
+    add_surface_tables(s);
     return s;
 }
 

@@ -11,12 +11,28 @@ struct DomainRow {
     std::optional<Vec3d> lower, upper;
     std::array<bool, 3> periodic{};
 };
-enum class Placement { lattice, list, file, fill };
+enum class Placement { lattice, list, file, fill, release };
 struct PlacementRow {
     Placement type = Placement::lattice;
 };
 struct FileRow {
     std::string path;
+};
+struct PathRow {
+    std::optional<std::string> path;
+};
+struct MeshRow {
+    std::string file;
+};
+struct TerrainRow {
+    std::string after;
+    std::optional<std::string> before;
+};
+struct ReleaseRow {
+    std::optional<double> spacing, radius, thickness;
+    std::optional<std::int64_t> count;
+    double jitter = 0;
+    std::optional<std::string> polygon;
 };
 struct FillRow {
     Vec3d lower, upper;
@@ -49,19 +65,26 @@ struct Schema {
     Section<ParticleList> list;
     Section<FileRow> file;
     Section<FillRow> fill;
+    Section<ReleaseRow> release;
     Section<SizeRow> size;                      ///< the law alone
     std::array<Section<SizeRow>, 5> size_laws;  ///< the fields of each law, in the order of SizeLaw
     Section<Plane> plane;
+    Section<MeshRow> mesh_file;
+    Section<Mesh> mesh;
+    Section<TerrainRow> terrain_files;
+    Section<Terrain> terrain;
     Section<Motion> motion, rotation, oscillation;
+    Section<PathRow> motion_path;
 
     /// Calls visit(section) in the order of the docs.
     template <class Visit>
     void each(Visit&& visit) const {
         visit(top), visit(simulation), visit(domain), visit(contact), visit(search), visit(rays), visit(output), visit(limits);
         visit(render), visit(camera), visit(material), visit(pair), visit(placement), visit(group), visit(lattice);
-        visit(list), visit(file), visit(fill), visit(size);
+        visit(list), visit(file), visit(fill), visit(release), visit(size);
         for (const auto& law : size_laws) visit(law);
-        visit(plane), visit(motion), visit(rotation), visit(oscillation);
+        visit(plane), visit(mesh_file), visit(mesh), visit(terrain_files), visit(terrain);
+        visit(motion), visit(rotation), visit(oscillation), visit(motion_path);
     }
 };
 

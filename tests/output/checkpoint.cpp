@@ -97,7 +97,7 @@ TEST_F(CheckpointFile, OfAnotherVersionSaysBoth) {
     H5Awrite(attribute, H5T_NATIVE_UINT32, &version);
     H5Aclose(attribute);
     H5Fclose(file);
-    EXPECT_TRUE(has(error(), "version 77, this program reads version 1")) << error();
+    EXPECT_TRUE(has(error(), "version 77, this program reads version 2")) << error();
 }
 
 TEST_F(CheckpointFile, CutAnywhereIsAnError) {

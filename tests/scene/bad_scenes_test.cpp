@@ -87,7 +87,7 @@ const std::vector<BadScene> values{
 };
 
 const std::vector<BadScene> particles{
-    {"no_type", group("material = \"grain\"\n"), "7:1", {"key 'particles.g.type' is missing", "one of lattice, list, file, fill"}},
+    {"no_type", group("material = \"grain\"\n"), "7:1", {"key 'particles.g.type' is missing", "one of lattice, list, file, fill, release"}},
     {"wrong_type", group("type = \"latice\"\n"), "8:8", {"did you mean 'lattice'?"}},
     {"no_materials", minimal + "[particles.g]\ntype = \"list\"\nmaterial = \"m\"\npositions = []\nradii = 1\n", "7:12", {"the scene has none", "[materials.m]"}},
     {"lattice_without_radius", lattice(count + spacing), "7:1", {"key 'particles.g.radius' is missing"}},
@@ -120,7 +120,7 @@ const std::vector<BadScene> particles{
     {"rotation_without_rate", plane("motion.rotation = {axis = [0, 0, 1], point = [0, 0, 0]}\n"), "9:19", {"'planes.p.motion.rotation.rate' is missing", "10 rpm"}},
     {"rate_in_hertz", plane("motion.rotation = {axis = [0, 0, 1], point = [0, 0, 0], rate = \"2 Hz\"}\n"), "9:64", {"wrong dimension", "rad/s, deg/s, rpm"}},
     {"stop_before_start", plane("motion = {start = 2, stop = 1}\n"), "9:29", {"greater than start (2 s)"}},
-    {"motion_key", plane("motion = {speed = 2}\n"), "9:11", {"key 'planes.p.motion.speed': unknown key", "oscillation, rotation, start, stop, velocity"}},
+    {"motion_key", plane("motion = {speed = 2}\n"), "9:11", {"key 'planes.p.motion.speed': unknown key", "oscillation, path, rotation, start, stop, velocity"}},
 };
 
 std::string name_of(const testing::TestParamInfo<BadScene>& info) { return info.param.name; }
