@@ -58,9 +58,7 @@ struct PairRows {
                 rest &= rest - 1;
                 const std::uint32_t next_k = lowest_bit(rest), next_j = rest ? words[next_k * slice_rows] & ~live_bit : j;
                 const Separation s = apart<periodic>(p, f, q, j);
-#ifdef V_PRE
                 asm volatile("prefetch.global.L1 [%0];" ::"l"(body + next_j));
-#endif
                 PairParameters c = only;
                 if (materials > 1) c = parameters[a.material * materials + b.material];
                 const PairForce force = pair_force(law, s, p.radius, q.radius, a.velocity - b.velocity, a.spin,
