@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include "arguments.hpp"
+#include "command.hpp"
 #include "commands.hpp"
 #include "surfaces/surfaces.hpp"
 
