@@ -16,19 +16,18 @@ std::string first_match(const char* file, const std::regex& pattern) {
 }
 
 std::string processor() { return first_match("/proc/cpuinfo", std::regex("^model name\\s*:\\s*(.*)$")); }
-std::string driver() { return first_match("/proc/driver/nvidia/version", std::regex("Module[^0-9]*([0-9.]+)")); }
 
 }  // namespace
 
 nlohmann::ordered_json machine_json(Device device, const std::string& name, int threads) {
     nlohmann::ordered_json machine;
-    const std::string gpu = cuda_available() ? cuda_status() : "none";
-    machine["name"] = !name.empty() ? name : device == Device::cuda ? gpu.substr(0, gpu.find(',')) : processor();
+    const std::string gpu = cuda_available() ? cuda_report().gpus.at(0).name : "none";
+    machine["name"] = !name.empty() ? name : device == Device::cuda ? gpu : processor();
     machine["device"] = std::string(grainray::name(device));
     machine["cpu"] = processor();
     machine["threads"] = threads;
     machine["gpu"] = gpu;
-    if (cuda_available()) machine["driver"] = driver();
+    if (cuda_available()) machine["driver"] = cuda_report().driver_version;
     for (const BackendInfo& info : search_backends(device)) machine["backends"][info.name] = info.reason;
     return machine;
 }

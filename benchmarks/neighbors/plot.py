@@ -3,9 +3,9 @@
 
     plot.py FILE.json ... [--out FOLDER] [--format png|svg] [--time KEY]
 
-Writes ratio (time against the ratio of sizes, where the points are most), points (time against the number of points) and
-clouds (time by cloud, where the points are most). Times are those of one list, a point; dashed: the list of points that
-moved a little, where a back end keeps something from call to call.
+Writes ratio (time against the ratio of sizes), points (time against the number of points) and clouds (time by cloud), the
+first and the last at the number of points that was measured most widely. Times are those of one list, a point; dashed: the
+list of points that moved a little, where a back end keeps something from call to call.
 """
 import argparse
 import json
@@ -32,8 +32,12 @@ def load(files):
         if data.get("benchmark") != "neighbors":
             sys.exit(f"plot.py: {name} is not a file of `grainray bench neighbors --json`")
         machine = data["machine"]
-        label = machine["name"] if machine["device"] == "cuda" else f"{machine['name']}, {machine['threads']} threads"
-        rows += [dict(row, machine=label, kind=data["kind"]) for row in data["results"] if "failure" not in row]
+        label = machine["name"] if machine["device"] == "cuda" else f"{machine['name']}, threads: {machine['threads']}"
+        alone = machine["device"] == "cpu" and machine["threads"] == 1
+        for row in data["results"]:
+            if "failure" not in row:
+                least = row["milliseconds_processor" if alone else "milliseconds_min"]
+                rows.append(dict(row, machine=label, kind=data["kind"], least=least))
     if not rows:
         sys.exit("plot.py: no figures in these files")
     return rows
@@ -75,12 +79,14 @@ def lines(axes, rows, x, key):
             line(axes, its, x, "milliseconds_update", color=color(backend), linestyle="--", marker=".")
 
 
-def most_points(rows):
-    """The rows of the largest number of points of each machine."""
-    most = {}
-    for row in rows:
-        most[row["machine"]] = max(row["points"], most.get(row["machine"], 0))
-    return [row for row in rows if row["points"] == most[row["machine"]]]
+def fullest(rows, key):
+    """Of each machine, the rows of the number of points that has most different values of key (of two, the larger)."""
+    chosen = []
+    for machine in unique(row["machine"] for row in rows):
+        its = [row for row in rows if row["machine"] == machine]
+        points = max(unique(row["points"] for row in its), key=lambda n: (len(unique(key(r) for r in its if r["points"] == n)), n))
+        chosen += [dict(row, machine=f"{machine}\n{points:,} points") for row in its if row["points"] == points]
+    return chosen
 
 
 def grid(plt, down, across, title):
@@ -112,7 +118,9 @@ def finish(figure, axes, path):
 def draw_lines(plt, rows, x, name, title, path, key):
     if len(unique(row[x] for row in rows)) < 2:
         return
-    machines, clouds = unique(row["machine"] for row in rows), unique(row["cloud"] for row in rows)
+    machines = unique(row["machine"] for row in rows)
+    clouds = [c for c in unique(row["cloud"] for row in rows)
+              if any(len(unique(r[x] for r in rows if r["cloud"] == c and r["machine"] == m)) > 1 for m in machines)]
     figure, axes = grid(plt, clouds, machines, title)
     for i, cloud in enumerate(clouds):
         for j, machine in enumerate(machines):
@@ -149,7 +157,8 @@ def main():
     parser.add_argument("files", nargs="+", metavar="FILE.json")
     parser.add_argument("--out", default=".", metavar="FOLDER")
     parser.add_argument("--format", default="png", choices=("png", "svg"))
-    parser.add_argument("--time", default="milliseconds_min", choices=TIMES, help="which time of a row (default: %(default)s)")
+    parser.add_argument("--time", default="least", choices=("least",) + TIMES,
+                        help="which time of a row; least is milliseconds_min, and of one thread the processor's (default: %(default)s)")
     options = parser.parse_args()
     try:
         import matplotlib
@@ -165,12 +174,12 @@ def main():
     def path(name):
         return os.path.join(options.out, f"{name}.{options.format}")
 
-    sized = [row for row in most_points(rows) if row["cloud"] in ("lognormal", "two-size")]
+    sized = fullest([row for row in rows if row["cloud"] in ("lognormal", "two-size")], lambda row: row["ratio"])
     draw_lines(plt, sized, "ratio", "largest reach / smallest", f"Time against the ratio of sizes, {kinds} lists", path("ratio"), options.time)
     equal = [row for row in rows if row["cloud"] not in ("lognormal", "two-size")]
     draw_lines(plt, equal, "points", "points", f"Time against the number of points, {kinds} lists",
                path("points"), options.time)
-    draw_clouds(plt, most_points(rows), f"Time by cloud, {kinds} lists", path("clouds"), options.time)
+    draw_clouds(plt, fullest(rows, cloud_label), f"Time by cloud, {kinds} lists", path("clouds"), options.time)
 
 
 if __name__ == "__main__":

@@ -14,7 +14,7 @@ endfunction()
 
 # The neighbour search alone must not look for anything that only simulations need.
 set(hidden "")
-foreach(package fmt tomlplusplus ZLIB PNG HDF5)
+foreach(package fmt tomlplusplus ZLIB PNG HDF5 assimp)
   list(APPEND hidden -D CMAKE_DISABLE_FIND_PACKAGE_${package}=ON)
 endforeach()
 
