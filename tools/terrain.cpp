@@ -1,11 +1,13 @@
 // grainray terrain flume: a pair of grids for examples/debris_flow.toml, for whoever has no data at hand.
 #include <cmath>
 #include <cstdio>
+#include <memory>
+#include <optional>
 
 #include <fmt/format.h>
 
+#include "arguments.hpp"
 #include "command.hpp"
-#include "commands.hpp"
 #include "surfaces/surfaces.hpp"
 
 namespace grainray::cli {
@@ -13,7 +15,7 @@ namespace {
 
 struct Options {
     std::string out = "flume";
-    double cell = 5;
+    std::optional<double> cell;
 };
 
 constexpr double length_x = 600, width_y = 200;  // m
@@ -32,35 +34,35 @@ double scoop(double x, double y) {
     return left > 0 ? 8 * left : 0;
 }
 
-int write_flume(const Options& options) {
-    if (!(options.cell >= 0.25 && options.cell <= 50)) throw InputError(fmt::format("--cell {}: must be from 0.25 to 50 m", options.cell));
-    ElevationGrid after{static_cast<std::int64_t>(length_x / options.cell) + 1, static_cast<std::int64_t>(width_y / options.cell) + 1, 0, 0, options.cell, options.cell, {}};
+int write_flume(const std::string& out, double cell) {
+    if (!(cell >= 0.25 && cell <= 50)) throw InputError(fmt::format("--cell {}: must be from 0.25 to 50 m", cell));
+    ElevationGrid after{static_cast<std::int64_t>(length_x / cell) + 1, static_cast<std::int64_t>(width_y / cell) + 1, 0, 0, cell, cell, {}};
     ElevationGrid before = after;
     double volume = 0;
     for (std::int64_t j = 0; j < after.rows; ++j)
         for (std::int64_t i = 0; i < after.columns; ++i) {
-            const double x = static_cast<double>(i) * options.cell, y = static_cast<double>(j) * options.cell, z = bare_slope(x, y), depth = scoop(x, y);
+            const double x = static_cast<double>(i) * cell, y = static_cast<double>(j) * cell, z = bare_slope(x, y), depth = scoop(x, y);
             before.heights.push_back(z);
             after.heights.push_back(z - depth);
-            volume += depth * options.cell * options.cell;
+            volume += depth * cell * cell;
         }
-    surfaces::write_esri_grid(options.out + "_before.asc", before);
-    surfaces::write_esri_grid(options.out + "_after.asc", after);
-    fmt::print("{0}_before.asc and {0}_after.asc: {1} x {2} nodes, {3} m apart, {4:.0f} m3 to slide\n", options.out, after.columns, after.rows, options.cell, volume);
+    surfaces::write_esri_grid(out + "_before.asc", before);
+    surfaces::write_esri_grid(out + "_after.asc", after);
+    fmt::print("{0}_before.asc and {0}_after.asc: {1} x {2} nodes, {3} m apart, {4:.0f} m3 to slide\n", out, after.columns, after.rows, cell, volume);
     return done;
 }
 
 }  // namespace
 
 void add_terrain(CLI::App& app, Action& chosen) {
-    CLI::App* command = app.add_subcommand("terrain", "Make a synthetic pair of elevation grids");
-    CLI::App* flume = command->add_subcommand("flume", "A channel on a slope that runs out on a plain, before and after a slide");
-    command->require_subcommand(1);
+    Command command(app, chosen, "terrain", "Make a synthetic pair of elevation grids");
+    command.action([]() -> int { throw InputError("terrain: say what to make: terrain flume; see grainray terrain --help"); });
+    Command flume(command.app(), chosen, "flume", "A channel on a slope that runs out on a plain, before and after a slide");
     const auto options = std::make_shared<Options>();
-    flume->add_option("--out", options->out, "Start of the file names; else flume")->type_name("NAME")->check(not_empty());
-    flume->add_option("--cell", options->cell, "Distance of nodes, m; else 5")->type_name("M");
-    flume->footer("Example: grainray terrain flume --out examples/flume && grainray run examples/debris_flow.toml");
-    flume->callback([options, &chosen] { chosen = [options] { return write_flume(*options); }; });
+    flume.option_with_default("--out", options->out, "NAME", "Start of the file names");
+    flume.option("--cell", options->cell, "M", "Distance of nodes, m; else 5");
+    flume.footer("Example: grainray terrain flume --out examples/flume && grainray run examples/debris_flow.toml");
+    flume.action([options] { return write_flume(options->out, options->cell.value_or(5)); });
 }
 
 }  // namespace grainray::cli

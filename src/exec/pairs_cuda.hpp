@@ -25,9 +25,9 @@ struct PairRows {
           inverse_force(static_cast<float>(1.0 / s.quanta.force)), inverse_torque(static_cast<float>(1.0 / s.quanta.torque)), period(s.period) {}
 
     template <bool periodic>
-    __device__ Separation apart(const Near& p, const Far& f, std::uint32_t j) const {
-        if constexpr (periodic) return separation(p, f, near[j], far[j], period);
-        else return separation(p, near[j]);
+    __device__ Separation apart(const Near& p, const Far& f, const Near& q, std::uint32_t j) const {
+        if constexpr (periodic) return separation(p, f, q, far[j], period);
+        else return separation(p, q);
     }
 
     /// Adds the forces on particle i to `sum` and brings its histories up to date.
@@ -43,20 +43,25 @@ struct PairRows {
             for (std::uint32_t k = 0; k < end; ++k) {
                 const std::uint32_t word = words[k * slice_rows];
                 live |= word >> 31 << k;
-                touching |= std::uint32_t{apart<periodic>(p, f, word & ~live_bit).gap > 0} << k;
+                touching |= std::uint32_t{apart<periodic>(p, f, near[word & ~live_bit], word & ~live_bit).gap > 0} << k;
             }
             for (std::uint32_t gone = live & ~touching; gone; gone &= gone - 1)
                 rows.clear_history(first + (__ffs(gone) - 1) * slice_rows);
-            for (std::uint32_t rest = touching; rest; rest &= rest - 1) {
-                const std::uint32_t k = __ffs(rest) - 1;
+            // One ahead: the partner of the next contact is known, and its body on the way, while this one is evaluated.
+            std::uint32_t k = lowest_bit(touching), j = touching ? words[k * slice_rows] & ~live_bit : 0;
+            for (std::uint32_t rest = touching; rest;) {
                 const std::uint64_t e = first + k * slice_rows;
-                const std::uint32_t j = words[k * slice_rows] & ~live_bit;
                 const bool was_live = live >> k & 1;
-                Vec3f h = was_live ? rows.stored(e) : Vec3f{};
                 const Body b = body[j];
+                const Near q = near[j];
+                Vec3f h = was_live ? rows.stored(e) : Vec3f{};
+                rest &= rest - 1;
+                const std::uint32_t next_k = lowest_bit(rest), next_j = rest ? words[next_k * slice_rows] & ~live_bit : j;
+                const Separation s = apart<periodic>(p, f, q, j);
+                asm volatile("prefetch.global.L1 [%0];" ::"l"(body + next_j));
                 PairParameters c = only;
                 if (materials > 1) c = parameters[a.material * materials + b.material];
-                const PairForce force = pair_force(law, apart<periodic>(p, f, j), p.radius, near[j].radius, a.velocity - b.velocity, a.spin,
+                const PairForce force = pair_force(law, s, p.radius, q.radius, a.velocity - b.velocity, a.spin,
                                                    b.spin, 0.5f * (a.mass + b.mass), c, unit, h);
                 if (was_live) rows.store(e, h);
                 else rows.set_history(e, h);
@@ -64,6 +69,8 @@ struct PairRows {
                     sum.force[axis] += quantize(force.force[axis], inverse_force);
                     sum.torque[axis] += quantize(force.torque_i[axis], inverse_torque);
                 }
+                k = next_k;
+                j = next_j;
             }
         }
     }
