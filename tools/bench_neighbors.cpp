@@ -3,7 +3,6 @@
 #include <cstdio>
 #include <set>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -139,27 +138,24 @@ int bench_neighbors(const Options& options) {
 void add_bench_neighbors(CLI::App& bench, Action& chosen) { add_bench_neighbors(bench, chosen, nullptr); }
 
 void add_bench_neighbors(CLI::App& bench, Action& chosen, Peers peers) {
-    CLI::App* command = bench.add_subcommand("neighbors", "Time of the neighbour search by back ends, on clouds of points");
+    Command command(bench, chosen, "neighbors", "Time of the neighbour search by back ends, on clouds of points");
     const auto options = std::make_shared<Options>();
     options->peers = peers;
     if (peers) options->kind = "full";
-    const auto list = [&](const char* name, auto& values, const char* text, const char* type) {
-        command->add_option(name, values, text)->delimiter(',')->allow_extra_args(false)->type_name(type);
-    };
-    list("--points", options->points, "Numbers of points, with commas between; default 20000,200000", "N,...");
-    list("--cloud", options->clouds, "random, lattice, lognormal, two-size, sparse, clustered, or all; default random,lognormal", "NAME,...");
-    list("--ratio", options->ratios, "Largest reach by smallest, of lognormal and two-size; default 8", "R,...");
-    list("--backend", options->backends, "Back ends as `grainray info` names them, auto, or all (brute force up to 20,000 points)", "NAME,...");
-    command->add_option("--kind", options->kind, "half: each pair once; full: in both rows")->capture_default_str();
-    command->add_option("--order", options->order, "Of the points in memory: morton, as a simulation keeps them, or random")->capture_default_str();
-    command->add_option("--device", options->device, "auto, cpu or cuda")->capture_default_str();
-    command->add_option("--threads", options->threads, "CPU threads; 0: all")->capture_default_str();
-    command->add_option("--seconds", options->seconds, "Time for each row, about; at least three repeats, at most 20")->capture_default_str();
-    command->add_option("--longest", options->longest, "A back end that takes more seconds on a cloud is left out of that cloud from then on")->capture_default_str();
-    command->add_option("--machine", options->machine, "Name of this machine in the file; default: its GPU or processor")->type_name("NAME");
-    command->add_option("--json", options->json, "Write the figures to this file")->type_name("FILE")->check(not_empty());
-    command->footer("Example: grainray bench neighbors --cloud two-size --ratio 1,2,4,8,16,32 --backend all --json neighbors.json");
-    command->callback([options, &chosen] { chosen = [options] { return bench_neighbors(*options); }; });
+    command.list("--points", options->points, "N,...", "Numbers of points, with commas between; default 20000,200000");
+    command.list("--cloud", options->clouds, "NAME,...", "random, lattice, lognormal, two-size, sparse, clustered, or all; default random,lognormal");
+    command.list("--ratio", options->ratios, "R,...", "Largest reach by smallest, of lognormal and two-size; default 8");
+    command.list("--backend", options->backends, "NAME,...", "Back ends as `grainray info` names them, auto, or all (brute force up to 20,000 points)");
+    command.option_with_default("--kind", options->kind, "", "half: each pair once; full: in both rows");
+    command.option_with_default("--order", options->order, "", "Of the points in memory: morton, as a simulation keeps them, or random");
+    command.option_with_default("--device", options->device, "", "auto, cpu or cuda");
+    command.option_with_default("--threads", options->threads, "", "CPU threads; 0: all");
+    command.option_with_default("--seconds", options->seconds, "", "Time for each row, about; at least three repeats, at most 20");
+    command.option_with_default("--longest", options->longest, "", "A back end that takes more seconds on a cloud is left out of that cloud from then on");
+    command.option("--machine", options->machine, "NAME", "Name of this machine in the file; default: its GPU or processor");
+    command.option("--json", options->json, "FILE", "Write the figures to this file");
+    command.footer("Example: grainray bench neighbors --cloud two-size --ratio 1,2,4,8,16,32 --backend all --json neighbors.json");
+    command.action([options] { return bench_neighbors(*options); });
 }
 
 }  // namespace grainray::cli

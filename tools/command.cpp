@@ -59,6 +59,33 @@ std::string wanted(const CLI::App& at, const CLI::ParseError& error) {
     return "";
 }
 
+CLI::Validator not_empty() {
+    return CLI::Validator([](std::string& text) { return text.empty() ? std::string("the name is empty") : std::string(); }, "");
+}
+
+/// Each takes one argument, so a scene may follow.
+void add_overrides(CLI::App& app, std::vector<std::string>& overrides) {
+    app.add_option("--set", overrides, "Change a key of the scene, as often as needed: --set materials.grain.friction=0.3")
+        ->type_name("KEY=VALUE")->allow_extra_args(false);
+}
+
+/// One sentence for what CLI11 found wrong.
+std::string parse_mistake(const CLI::App& app, const CLI::ParseError& error) {
+    const CLI::App& at = deepest(app);
+    const std::string help = fmt::format("see {} --help", &at == &app ? app.get_name() : app.get_name() + " " + at.get_display_name());
+    std::vector<std::string> extras = app.remaining(true);
+    std::string_view first;
+    for (const std::string& word : extras)
+        if (word.starts_with('-') && word != "--") {
+            const std::string name = word.substr(0, word.find('='));
+            return fmt::format("unknown option '{}'{} For all options {}", name, nearest(name, option_names(at)), help);
+        } else if (first.empty()) first = word;
+    if (first.empty()) return fmt::format("{}{}; {}", one_line(error.what()), wanted(at, error), help);
+    if (!at.get_subcommands([](const CLI::App*) { return true; }).empty())
+        return fmt::format("unknown command '{}'{} For all commands {}", first, nearest(first, command_names(at)), help);
+    return fmt::format("unexpected argument '{}'; {}", first, help);
+}
+
 }  // namespace
 
 Command::Command(CLI::App& parent, Action& chosen, const std::string& name, const std::string& text) : command_(*parent.add_subcommand(name, text)), chosen_(chosen) {}
@@ -89,6 +116,7 @@ void Command::option_with_default(const std::string& name, T& value, const std::
 }
 template void Command::option_with_default(const std::string&, std::string&, const std::string&, const std::string&);
 template void Command::option_with_default(const std::string&, int&, const std::string&, const std::string&);
+template void Command::option_with_default(const std::string&, double&, const std::string&, const std::string&);
 
 void Command::flag(const std::string& name, bool& value, const std::string& text) { command_.add_flag(name, value, text); }
 
@@ -99,6 +127,14 @@ void Command::engine_options(EngineOptions& options) {
     add_overrides(command_, options.set);
 }
 
+template <class T>
+void Command::list(const std::string& name, std::vector<T>& values, const std::string& type, const std::string& text) {
+    command_.add_option(name, values, text)->delimiter(',')->allow_extra_args(false)->type_name(type);
+}
+template void Command::list(const std::string&, std::vector<std::string>&, const std::string&, const std::string&);
+template void Command::list(const std::string&, std::vector<std::int64_t>&, const std::string&, const std::string&);
+template void Command::list(const std::string&, std::vector<double>&, const std::string&, const std::string&);
+
 void Command::footer(const std::string& text) { command_.footer(text); }
 
 /// A command below this one has chosen first.
@@ -108,29 +144,19 @@ void Command::action(Action action) {
     });
 }
 
-CLI::Validator not_empty() {
-    return CLI::Validator([](std::string& text) { return text.empty() ? std::string("the name is empty") : std::string(); }, "");
-}
-
-void add_overrides(CLI::App& app, std::vector<std::string>& overrides) {
-    app.add_option("--set", overrides, "Change a key of the scene, as often as needed: --set materials.grain.friction=0.3")
-        ->type_name("KEY=VALUE")->allow_extra_args(false);
-}
-
-std::string parse_mistake(const CLI::App& app, const CLI::ParseError& error) {
-    const CLI::App& at = deepest(app);
-    const std::string help = fmt::format("see {} --help", &at == &app ? app.get_name() : app.get_name() + " " + at.get_display_name());
-    std::vector<std::string> extras = app.remaining(true);
-    std::string_view first;
-    for (const std::string& word : extras)
-        if (word.starts_with('-') && word != "--") {
-            const std::string name = word.substr(0, word.find('='));
-            return fmt::format("unknown option '{}'{} For all options {}", name, nearest(name, option_names(at)), help);
-        } else if (first.empty()) first = word;
-    if (first.empty()) return fmt::format("{}{}; {}", one_line(error.what()), wanted(at, error), help);
-    if (!at.get_subcommands([](const CLI::App*) { return true; }).empty())
-        return fmt::format("unknown command '{}'{} For all commands {}", first, nearest(first, command_names(at)), help);
-    return fmt::format("unexpected argument '{}'; {}", first, help);
+Action parse_command_line(int argc, char** argv, void (*add_commands)(CLI::App&, Action& chosen)) {
+    CLI::App app("grainray: granular material, grain by grain", "grainray");
+    app.set_version_flag("--version", "grainray " GRAINRAY_VERSION);
+    Action chosen;
+    add_commands(app, chosen);
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::ParseError& e) {
+        if (e.get_exit_code() != 0) throw InputError(parse_mistake(app, e));
+        app.exit(e);  // prints what --help or --version asked for
+        return [] { return done; };
+    }
+    return chosen;
 }
 
 }  // namespace grainray::cli

@@ -6,11 +6,6 @@
 
 #include "commands.hpp"
 
-namespace CLI {
-class ParseError;
-class Validator;
-}  // namespace CLI
-
 namespace grainray::cli {
 
 struct EngineOptions;
@@ -26,15 +21,18 @@ public:
     void argument(const std::string& name, T& value, const std::string& text);
     /// Any number of arguments, also none.
     void arguments(const std::string& name, std::vector<std::string>& values, const std::string& text);
-    /// T: std::string; std::filesystem::path, which must not be ""; std::optional of std::int64_t or double.
+    /// T: std::string; std::filesystem::path, which must not be "", such as a variable of the shell that is not set; std::optional of std::int64_t or double.
     template <class T>
     void option(const std::string& name, T& value, const std::string& type, const std::string& text);
-    /// The help shows what `value` is before. type "": what CLI11 calls it. T: std::string, int.
+    /// The help shows what `value` is before. type "": what CLI11 calls it. T: std::string, int, double.
     template <class T>
     void option_with_default(const std::string& name, T& value, const std::string& type, const std::string& text);
     void flag(const std::string& name, bool& value, const std::string& text);
     /// --device, --search, --threads, --set
     void engine_options(EngineOptions&);
+    /// Any number of values with commas between. T: std::string, std::int64_t, double.
+    template <class T>
+    void list(const std::string& name, std::vector<T>& values, const std::string& type, const std::string& text);
     void footer(const std::string&);
     /// What is done where the command line ends with this command.
     void action(Action);
@@ -46,11 +44,8 @@ private:
     Action& chosen_;
 };
 
-/// For names of files: "" is a mistake, such as a variable of the shell that is not set.
-CLI::Validator not_empty();
-/// --set key=value, any number of times; each takes one argument, so a scene may follow.
-void add_overrides(CLI::App&, std::vector<std::string>&);
-/// One sentence for what CLI11 found wrong; unknown commands and options come with the nearest name.
-std::string parse_mistake(const CLI::App&, const CLI::ParseError&);
+/// What the command line asks for, --help and --version included; none where it names no command. Throws InputError with
+/// one sentence; unknown commands and options come with the nearest name.
+Action parse_command_line(int argc, char** argv, void (*add_commands)(CLI::App&, Action& chosen));
 
 }  // namespace grainray::cli

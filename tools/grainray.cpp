@@ -6,7 +6,6 @@
 #include <new>
 #include <system_error>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include "command.hpp"
@@ -36,10 +35,9 @@ void add_validate(CLI::App& app, Action& chosen) {
 }
 
 void add_commands(CLI::App& app, Action& chosen) {
-    app.set_version_flag("--version", "grainray " GRAINRAY_VERSION);
-    app.footer("Start with: grainray check examples/column_collapse.toml\n"
-               "then:       grainray run examples/column_collapse.toml --out column\n"
-               "Exit status: 0 done; 1 the simulation failed; 2 the input is wrong; 130 interrupted, state saved.");
+    Command(app, chosen).footer("Start with: grainray check examples/column_collapse.toml\n"
+                                "then:       grainray run examples/column_collapse.toml --out column\n"
+                                "Exit status: 0 done; 1 the simulation failed; 2 the input is wrong; 130 interrupted, state saved.");
     add_run(app, chosen);
     add_check(app, chosen);
     add_info(app, chosen);
@@ -58,15 +56,7 @@ int written(int status) {
 }
 
 int parse_and_run(int argc, char** argv) {
-    CLI::App app("grainray: granular material, grain by grain", "grainray");
-    Action chosen;
-    add_commands(app, chosen);
-    try {
-        app.parse(argc, argv);
-    } catch (const CLI::ParseError& e) {
-        if (e.get_exit_code() == 0) return written(app.exit(e));  // --help, --version
-        return report(parse_mistake(app, e), input_wrong);
-    }
+    const Action chosen = parse_command_line(argc, argv, add_commands);
     if (!chosen) return report("no command given; see grainray --help", input_wrong);
     return written(chosen());
 }

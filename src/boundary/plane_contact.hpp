@@ -1,8 +1,7 @@
-// One particle and the planes near it. A plane is a half-space: the overlap is r - signed distance, however deep a centre
-// may lie.
+// One particle and the planes near it.
 #pragma once
 
-#include "state.hpp"
+#include "boundary/plane_force.hpp"
 
 namespace grainray {
 
@@ -37,24 +36,18 @@ struct PlaneContacts {
         for (std::uint64_t e = offsets[i], end = offsets[i + 1]; e < end; ++e) {
             const std::uint32_t q = partners[e];
             const PlaneNow& plane = planes[first_plane + q];
-            const double distance = dot(plane.normal, x - plane.point);
-            const float overlap = static_cast<float>(radius * unit - distance);
+            const float overlap = plane_overlap(plane, x, radius, unit);
             if (!(overlap > 0)) {
                 history[e] = Vec3f{};
                 continue;
             }
-            const Vec3f n = convert<float>(plane.normal);
-            const float arm = fmaxf(static_cast<float>(radius * unit) - 0.5f * overlap, 0.0f);
-            const Vec3f from_centre = convert<float>(x - plane.centre) - n * arm;
-            const Vec3f wall_velocity = plane.velocity + cross(plane.spin, from_centre);
-            const Vec3f velocity = b.velocity - cross(b.spin * arm, n) - wall_velocity;
             Vec3f h = history[e];
-            const Vec3f force = law(Contact{n, overlap, velocity, b.mass}, parameters[b.material * plane_count + q], h);
+            const PlaneForce f = plane_force(law, plane, x, radius, unit, overlap, b.velocity, b.spin, b.mass,
+                                             parameters[b.material * plane_count + q], h);
             history[e] = h;
-            const Vec3f torque = cross(n, force) * -arm;
             for (int a = 0; a < 3; ++a) {
-                w.force[a] += quantize(force[a], inverse_force);
-                w.torque[a] += quantize(torque[a], inverse_torque);
+                w.force[a] += quantize(f.force[a], inverse_force);
+                w.torque[a] += quantize(f.torque[a], inverse_torque);
             }
         }
     }

@@ -42,24 +42,32 @@ struct PairForce {
     Vec3f force, torque_i, torque_j;
 };
 
-/// Geometry, relative motion at the contact point (lever arms r - u/2), law. radius_i, radius_j in units.
+/// Geometry, relative motion at the contact point (lever arms r - u/2), law. x, y, z, radii in units, square_distance d^2
+/// and gap R^2 - d^2 rounded once from the exact integers.
 template <class Law>
-GR_HD inline PairForce pair_force(const Law& law, const Separation& s, std::int32_t radius_i, std::int32_t radius_j, const Vec3f& velocity,
-                                  const Vec3f& spin_i, const Vec3f& spin_j, float mean_mass, const PairParameters& parameters, float unit,
-                                  Vec3f& history) {
+GR_HD inline PairForce pair_force(const Law& law, std::int32_t x, std::int32_t y, std::int32_t z, float square_distance, float gap,
+                                  std::int32_t radius_i, std::int32_t radius_j, const Vec3f& velocity, const Vec3f& spin_i, const Vec3f& spin_j,
+                                  float mean_mass, const PairParameters& parameters, float unit, Vec3f& history) {
     const float ri = static_cast<float>(radius_i), rj = static_cast<float>(radius_j), radii = static_cast<float>(radius_i + radius_j);
-    const std::int64_t sum = static_cast<std::int64_t>(radius_i) + radius_j;
-    const float d = sqrtf(static_cast<float>(sum * sum - s.gap));
+    const float d = sqrtf(square_distance);
     // u = R - d without cancellation; coincident centres have no direction and feel no force.
-    const float overlap = static_cast<float>(s.gap) / (radii + d) * unit;
+    const float overlap = gap / (radii + d) * unit;
     const float inverse = d > 0 ? 1.0f / d : 0.0f;
-    const Vec3f n{static_cast<float>(s.x) * inverse, static_cast<float>(s.y) * inverse, static_cast<float>(s.z) * inverse};
+    const Vec3f n{static_cast<float>(x) * inverse, static_cast<float>(y) * inverse, static_cast<float>(z) * inverse};
     const float arm_i = ri * unit - 0.5f * overlap, arm_j = rj * unit - 0.5f * overlap;
 
     const Vec3f at_contact = velocity - cross(spin_i * arm_i + spin_j * arm_j, n);
     const Vec3f force = law(Contact{n, overlap, at_contact, mean_mass}, parameters, history);
     const Vec3f moment = cross(n, force);
     return {force, moment * -arm_i, moment * -arm_j};
+}
+template <class Law>
+GR_HD inline PairForce pair_force(const Law& law, const Separation& s, std::int32_t radius_i, std::int32_t radius_j, const Vec3f& velocity,
+                                  const Vec3f& spin_i, const Vec3f& spin_j, float mean_mass, const PairParameters& parameters, float unit,
+                                  Vec3f& history) {
+    const std::int64_t sum = static_cast<std::int64_t>(radius_i) + radius_j;
+    return pair_force(law, s.x, s.y, s.z, static_cast<float>(sum * sum - s.gap), static_cast<float>(s.gap), radius_i, radius_j, velocity,
+                      spin_i, spin_j, mean_mass, parameters, unit, history);
 }
 
 /// Everything the pair loop reads and writes; views, copied to the device.

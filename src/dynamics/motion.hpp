@@ -3,6 +3,8 @@
 // g dt would lose the same bits at every step of a long fall.
 #pragma once
 
+#include <bit>
+
 #include "state.hpp"
 
 namespace grainray {
@@ -22,28 +24,45 @@ struct Motion {
         return a * (1.0f - constants.mass_damping * sign);
     }
 
-    /// False where the step is not finite: then the position stays.
-    GR_HD bool advance(const Wrench& w, Near& p, Far& f, Body& b, Vec3f& left) const {
-        const float r = static_cast<float>(p.radius) * unit;
-        const float inverse_mass = 1.0f / b.mass, inverse_inertia = 1.0f / (0.4f * b.mass * (r * r));
+    /// Velocities after the step under a force and a torque, in quanta. `radius` in units.
+    GR_HD void kick(const Vec3f& force, const Vec3f& torque, float mass, std::int32_t radius, Vec3f& velocity, Vec3f& spin, Vec3f& left) const {
+        const float r = static_cast<float>(radius) * unit;
+        const float inverse_mass = 1.0f / mass, inverse_inertia = 1.0f / (0.4f * mass * (r * r));
         const float dt = constants.dt;
         for (int a = 0; a < 3; ++a) {
-            const float force = static_cast<float>(w.force[a]) * force_quantum;
-            const float acceleration = force * inverse_mass + constants.gravity[a];
-            const float before = b.velocity[a], change = damped(acceleration, before) * dt + left[a];
-            b.velocity[a] = before + change;
-            left[a] = change - (b.velocity[a] - before);
-            b.spin[a] += static_cast<float>(w.torque[a]) * torque_quantum * inverse_inertia * dt;
+            const float acceleration = force[a] * force_quantum * inverse_mass + constants.gravity[a];
+            const float before = velocity[a], change = damped(acceleration, before) * dt + left[a];
+            velocity[a] = before + change;
+            left[a] = change - (velocity[a] - before);
+            spin[a] += torque[a] * torque_quantum * inverse_inertia * dt;
         }
-        constexpr float most = 1e15f;  // fine units; far beyond any sane step, and exact as an integer
-        const Vec3f s = b.velocity * dt * inverse_fine;
-        if (!(fabsf(s.x) < most && fabsf(s.y) < most && fabsf(s.z) < most)) return false;
+    }
+
+    /// The way of one step, fine units.
+    GR_HD Vec3f way(const Vec3f& velocity) const { return velocity * constants.dt * inverse_fine; }
+    /// Far beyond any sane step, and exact as an integer.
+    GR_HD static bool sane(const Vec3f& way) {
+        constexpr float most = 1e15f;
+        return (fabsf(way.x) < most) & (fabsf(way.y) < most) & (fabsf(way.z) < most);
+    }
+
+    /// llrintf() where |v| < 2^51, in a form that vectorises.
+    GR_HD static std::int64_t rounded(float v) {
+        return std::bit_cast<std::int64_t>(static_cast<double>(v) + quantum_magic) - std::bit_cast<std::int64_t>(quantum_magic);
+    }
+
+    /// False where the step is not finite: then the position stays.
+    GR_HD bool advance(const Wrench& w, Near& p, Far& f, Body& b, Vec3f& left) const {
+        kick(float_of(w.force), float_of(w.torque), b.mass, p.radius, b.velocity, b.spin, left);
+        const Vec3f s = way(b.velocity);
+        if (!sane(s)) return false;
         Vec3l x = join(p, f);
         x += Vec3l{llrintf(s.x), llrintf(s.y), llrintf(s.z)};
         p = {near_of(x.x), near_of(x.y), near_of(x.z), p.radius};
         f = far_of(x);
         return true;
     }
+    GR_HD static Vec3f float_of(const std::int64_t (&v)[3]) { return {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2])}; }
 
     /// Has the particle moved its margin, less what its surroundings moved in `age` steps since the list was built?
     GR_HD bool past_margin(const Near& p, const Near& built, const Vec3f& frame, float age) const {

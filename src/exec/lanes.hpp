@@ -71,4 +71,21 @@ template <int L, class T, class Where>
     transpose(field);
 }
 
+template <int quad, class V, class Q, std::size_t... k>
+[[gnu::always_inline]] inline void part(const V& v, Q& to, std::index_sequence<k...>) { to = __builtin_shufflevector(v, v, (4 * quad + k)...); }
+/// The way back: lane l of field[f] becomes field f of the four at where(l).
+template <int L, class T, class Where, std::size_t... q>
+[[gnu::always_inline]] inline void scatter(Vector<T, L> (&field)[4], const Where& where, std::index_sequence<q...>) {
+    transpose(field);
+    for (int m = 0; m < 4; ++m) {
+        Vector<T, 4> quad[L / 4];
+        (part<q>(field[m], quad[q], std::make_index_sequence<4>()), ...);
+        (store<4>(quad[q], where(static_cast<int>(4 * q) + m)), ...);
+    }
+}
+template <int L, class T, class Where>
+[[gnu::always_inline]] inline void scatter(Vector<T, L> (&field)[4], const Where& where) {
+    scatter<L, T>(field, where, std::make_index_sequence<L / 4>());
+}
+
 }  // namespace grainray::cpu::lanes

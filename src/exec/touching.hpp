@@ -4,15 +4,15 @@
 #include <algorithm>
 
 #include "contacts/pair.hpp"
+#include "exec/widest.hpp"
 
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
-#define GRAINRAY_X86_LEVELS 1
+#ifdef GRAINRAY_X86_LEVELS
 #include <immintrin.h>
 #endif
 
 namespace grainray::cpu::pairs {
 
-/// Touching pairs; what lies past `size` is a valid index.
+/// Touching pairs; what lies past `size` is a valid index, too.
 struct alignas(64) Touching {
     static constexpr int stretch = 512;        ///< entries tested at once
     static constexpr int room = stretch + 64;  ///< vectors write and read past the end
@@ -22,6 +22,12 @@ struct alignas(64) Touching {
     std::int32_t radius_i[room], radius_j[room];
     std::uint64_t start = 0;
     int size = 0;
+
+    void finish(std::uint64_t first_entry, int found) {
+        start = first_entry;
+        size = found;
+        std::fill_n(&entry[found], 64, 0u);
+    }
 };
 
 /// Walks the entries of rows [first, last) in stretches.
@@ -70,8 +76,7 @@ template <bool periodic>
         if (!touching && loop.touched[e]) loop.history[e] = Vec3f{};
         loop.touched[e] = touching;
     }
-    found.start = s.start;
-    found.size = size;
+    found.finish(s.start, size);
 }
 
 #ifdef GRAINRAY_X86_LEVELS
@@ -137,11 +142,19 @@ inline void find_touching_v4(const PairLoop& loop, const Stretches& s, Touching&
         for (; dead; dead &= dead - 1) loop.history[s.start + k + __builtin_ctz(dead)] = Vec3f{};
         _mm_mask_storeu_epi8(touched, valid, _mm_maskz_set1_epi8(hit, 1));
     }
-    found.start = s.start;
-    found.size = size;
+    found.finish(s.start, size);
 }
 #pragma GCC diagnostic pop
 #pragma GCC pop_options
 #endif
+
+/// In the way that suits registers of L floats.
+template <bool periodic, int L>
+[[gnu::always_inline]] inline void find(const PairLoop& loop, const Stretches& s, Touching& found) {
+#ifdef GRAINRAY_X86_LEVELS
+    if constexpr (L == 16 && !periodic) return find_touching_v4(loop, s, found);
+#endif
+    find_touching<periodic>(loop, s, found);
+}
 
 }  // namespace grainray::cpu::pairs

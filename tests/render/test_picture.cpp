@@ -34,7 +34,7 @@ TEST(Picture, SphereInTheMiddleBackgroundAround) {
     const Image image = render(frame, {}, small());
     ASSERT_EQ(image.rgb.size(), 3u * 64 * 48);
     EXPECT_TRUE(orange(centre(image)));
-    for (const auto [x, y] : {std::pair{0, 0}, {63, 0}, {0, 47}, {63, 47}}) EXPECT_TRUE(pixel(image, x, y).white());
+    for (const auto& [x, y] : {std::pair{0, 0}, {63, 0}, {0, 47}, {63, 47}}) EXPECT_TRUE(pixel(image, x, y).white());
     // 10 m away, 35 degrees over 48 rows: a disc of radius 7.65 pixels.
     EXPECT_NEAR(filled(image) * 64 * 48, std::numbers::pi * 7.65 * 7.65, 45);
 }

@@ -15,7 +15,7 @@ struct Sorted {
     template <class Test, class Emit>
     GR_HD void find(const neighbors::Sphere& s, float half_width, const Test& test, const Emit& emit) const {
         if constexpr (device == Device::cuda) return find_flat(s, half_width, test, emit);
-        grid.for_each_run(s, half_width, [&](std::uint32_t first, std::uint32_t last) {
+        grid.for_each_run<device == Device::cuda>(s, half_width, [&](std::uint32_t first, std::uint32_t last) {
             for (std::uint32_t p = starts[first], end = starts[last]; p < end; ++p) emit(order[p], test(p));
         });
     }
@@ -40,7 +40,7 @@ struct Sorted {
             }
             runs = 0;
         };
-        grid.for_each_run(s, half_width, [&](std::uint32_t first, std::uint32_t last) {
+        grid.for_each_run<device == Device::cuda>(s, half_width, [&](std::uint32_t first, std::uint32_t last) {
             begin[runs] = starts[first];
             end[runs] = starts[last];
             runs += begin[runs] < end[runs];
