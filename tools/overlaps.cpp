@@ -89,7 +89,8 @@ void find_surfaces(const Scene& scene, const InitialState& s, Overlaps& found) {
             const Vec3d x = facets.now.data()[q].into(s.positions[i] - scale.origin);
             double deepest = 0, area = 0, depth = 0;
             shapes.for_each_near(q, x, s.radii[i], [&](std::uint32_t id) {
-                const Section at = section(shapes.facet(surface, id), x, s.radii[i]);
+                Triangle t = shapes.facet(surface, id);
+                const Section at = shapes.section_of(surface, id, t, x, s.radii[i]);
                 const double distance = surface.terrain ? at.distance : std::fabs(at.distance);
                 const double part = at.rim ? 0 : at.share * (s.radii[i] - at.distance) * (s.radii[i] + at.distance);
                 area += part;

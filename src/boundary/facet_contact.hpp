@@ -82,8 +82,8 @@ private:
                 entries.shares[e] = 0;
                 continue;
             }
-            const Triangle t = shapes.facet(surface, entries.facets[e]);
-            const Section s = section(t, v.x, particle.radius);
+            Triangle t = shapes.facet(surface, entries.facets[e]);
+            const Section s = shapes.section_of(surface, entries.facets[e], t, v.x, particle.radius);
             entries.shares[e] = s.rim ? touched_by_rim : s.share;
             const double step = dot(t.normal, v.step), was = entries.states[e].side;
             if (side == 0) side = was;
@@ -139,13 +139,13 @@ private:
                 if (state.side != 0) state = FacetState{};
                 continue;
             }
-            const Triangle t = shapes.facet(surface, entries.facets[e]);
+            Triangle t = shapes.facet(surface, entries.facets[e]);
             const bool rim = entries.shares[e] == touched_by_rim;
             const double height = dot(t.normal, v.x - t.a);
             Vec3d n = t.normal * v.side;
             double distance = v.side * height, weight = entries.shares[e] * ((particle.radius + distance) / (particle.radius + v.distance));
             if (rim) {
-                const Vec3d apart = v.x - section(t, v.x, particle.radius).nearest;
+                const Vec3d apart = v.x - shapes.section_of(surface, entries.facets[e], t, v.x, particle.radius).nearest;
                 distance = length(apart);
                 n = apart * (1 / (distance > 0 ? distance : 1));
                 weight = 1;

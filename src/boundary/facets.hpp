@@ -112,20 +112,40 @@ struct FacetShapes {
         t.b = half ? node(s, i + 1, j + 1) : node(s, i + 1, j);
         t.c = half ? node(s, i, j + 1) : node(s, i + 1, j + 1);
         t.normal = unit_normal(t.a, t.b, t.c);
+        return t;
+    }
+    GR_HD std::uint32_t half_cell_rims(const Surface& s, std::int32_t i, std::int32_t j, int half) const {
         const bool ab = half ? missing(s, i + 1, j) : missing(s, i, j - 1);
         const bool bc = half ? missing(s, i + 1, j + 2) : missing(s, i + 2, j + 1);
         const bool ca = half ? missing(s, i - 1, j) : missing(s, i, j + 1);
-        t.free_edges = (ab ? 1u : 0u) | (bc ? 2u : 0u) | (ca ? 4u : 0u);
-        return t;
+        return (ab ? 1u : 0u) | (bc ? 2u : 0u) | (ca ? 4u : 0u);
     }
     GR_HD bool has_half_cell(const Surface& s, std::int32_t i, std::int32_t j, int half) const {
         return !missing(s, i, j) && !missing(s, i + 1, j + 1) && !(half ? missing(s, i, j + 1) : missing(s, i + 1, j));
     }
+    /// Of a terrain without its rims: they are asked for where an edge matters.
     GR_HD Triangle facet(const Surface& s, std::uint32_t id) const {
         if (!s.terrain) return triangles[id];
         const std::uint32_t cell = (id - s.first) / 2, nx = static_cast<std::uint32_t>(s.nx);
         return half_cell(s, static_cast<std::int32_t>(cell % nx), static_cast<std::int32_t>(cell / nx), static_cast<int>((id - s.first) & 1));
     }
+    GR_HD std::uint32_t rims(const Surface& s, std::uint32_t id) const {
+        if (!s.terrain) return triangles[id].free_edges;
+        const std::uint32_t cell = (id - s.first) / 2, nx = static_cast<std::uint32_t>(s.nx);
+        return half_cell_rims(s, static_cast<std::int32_t>(cell % nx), static_cast<std::int32_t>(cell / nx), static_cast<int>((id - s.first) & 1));
+    }
+    /// What a facet means to a sphere.
+    GR_HD Section section_of(const Surface& s, std::uint32_t id, Triangle& t, const Vec3d& x, double radius) const {
+        Section whole;
+        whole.distance = dot(t.normal, x - t.a);
+        const double square = (radius - whole.distance) * (radius + whole.distance);
+        if (!(square > 0)) return whole;
+        whole.share = 1;
+        if (beside_edge(t, 0, x, square) > 0 && beside_edge(t, 1, x, square) > 0 && beside_edge(t, 2, x, square) > 0) return whole;
+        t.free_edges = rims(s, id);
+        return section(t, x, radius);
+    }
+
     /// True only where the plane of a facet is farther than `reach` from x; cheaper than the facet itself.
     GR_HD bool apart(const Surface& s, std::uint32_t id, const Vec3d& x, double reach) const {
         if (!s.terrain) {
