@@ -136,14 +136,14 @@ void walls(State& s, ContactLaw law, const StepConstants& constants) {
                   s.walls.history.view(), s.planes.view(), s.wall_parameters.view(), s.plane_count, s.wrench.view(), s.particles.scale.unit,
                   s.particles.scale.fine(), Sums(1.0 / s.quanta.force, 1.0 / s.quanta.torque)};
     if (w.partners.size == 0) return;
-    constexpr std::size_t chunk = 4096;
+    constexpr std::size_t chunk = 1024;
     const std::size_t n = s.size();
     with_law(law, constants.dt, [&](auto functor) {
-        for_each((n + chunk - 1) / chunk, [&](std::size_t c) {
+        for_each_share((n + chunk - 1) / chunk, [&](std::size_t c) {
             with_widest_registers([&]<int L>() __attribute__((always_inline)) {
                 add_walls<L>(w, functor, c * chunk, std::min(n, (c + 1) * chunk));
             });
-        }, 1);
+        });
     });
 }
 

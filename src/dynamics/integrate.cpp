@@ -157,7 +157,7 @@ void integrate(State& s, const StepConstants& constants, float trigger) {
                          s.flags.view(), static_cast<float>(s.age.steps)};
     constexpr std::size_t chunk = 16 * width;
     const std::size_t n = s.size();
-    for_each((n + chunk - 1) / chunk, [&](std::size_t c) {
+    for_each_share((n + chunk - 1) / chunk, [&](std::size_t c) {
         const std::size_t end = std::min(n, (c + 1) * chunk);
         std::size_t i = c * chunk;
         with_widest_registers([&]<int L>() __attribute__((always_inline)) {
@@ -165,7 +165,7 @@ void integrate(State& s, const StepConstants& constants, float trigger) {
                 for (; i + width <= end; i += width) move.batch<L>(i);
         });
         for (; i < end; ++i) move.single(i);
-    }, 1);
+    });
 }
 
 }  // namespace grainray::cpu

@@ -24,6 +24,14 @@ void for_each(std::size_t n, const F& f, std::size_t grain = 2048) {
     });
 }
 
+/// The same for the stages of a step, in which each thread gets the same share every time: what it wrote is in its cache.
+template <class F>
+void for_each_share(std::size_t n, const F& f) {
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, n, 1), [&](const auto& range) {
+        for (std::size_t i = range.begin(); i != range.end(); ++i) f(i);
+    }, tbb::static_partitioner());
+}
+
 /// op over f(0) ... f(n-1); the tree of additions depends on n alone.
 template <class T, class F, class Op>
 T reduce(std::size_t n, T identity, const F& f, const Op& op) {
