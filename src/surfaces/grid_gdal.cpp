@@ -11,9 +11,9 @@ namespace grainray::surfaces {
 
 ElevationGrid read_with_gdal(const std::filesystem::path& path, const std::string& place) {
     GDALAllRegister();
-    CPLPushErrorHandler(CPLQuietErrorHandler);
+    CPLPushErrorHandler(CPLQuietErrorHandler);  // the sentences below say it in the scene's terms
+    const std::shared_ptr<void> quiet(nullptr, [](void*) { CPLPopErrorHandler(); });
     const std::unique_ptr<GDALDataset> data(GDALDataset::FromHandle(GDALOpenEx(path.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY, nullptr, nullptr, nullptr)));
-    CPLPopErrorHandler();
     if (!data || data->GetRasterCount() < 1)
         throw InputError(place + "it is neither an ESRI ASCII grid nor a raster that GDAL can read; give a grid of elevations");
     double t[6];
