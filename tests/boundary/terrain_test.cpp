@@ -109,6 +109,37 @@ TEST_P(OnTerrain, ASlopeAnswersAsAPlane) {
     EXPECT_LT(b.frame().position[0].x, 2.5);  // it did roll
 }
 
+/// Equal piles in pits in the middle of a terrain of 3 km, at its rim and in between: no place is worse than another.
+TEST_P(OnTerrain, PilesAreStillFarFromTheMiddleToo) {
+    const double places[] = {-1498, -750, 0, 750, 1498};
+    ElevationGrid pits{6001, 9, -1500, -2, 0.5, 0.5, std::vector<double>(6001 * 9, 1.0)};
+    for (const double place : places)
+        for (int j = 3; j <= 5; ++j)
+            for (int i = -1; i <= 1; ++i) pits.heights[static_cast<std::size_t>(6001 * j + 2 * (place + 1500) + i)] = 0;
+    Case c = on_terrain(pits);
+    c.scene.dt = 2e-4;
+    c.scene.contact.mass_damping = 0.5;
+    c.scene.materials[1].normal_stiffness = 1e6;
+    c.scene.materials[1].tangential_stiffness = 2e5;
+    Dice dice(5);
+    std::vector<Vec3d> pile;
+    for (int i = 0; i < 36; ++i)
+        pile.push_back({0.21 * (i % 4) - 0.315 + dice(0, 0.015), 0.21 * (i / 4 % 3) - 0.21 + dice(0, 0.015), 0.11 + 0.22 * (i / 12)});
+    for (const double place : places)
+        for (const Vec3d& x : pile) {
+            Vec3d p;
+            for (int a = 0; a < 3; ++a) p[a] = std::ldexp(std::round(std::ldexp(x[a], 24)), -24);  // exact wherever it stands
+            c.add(p + Vec3d{place, 0, 0}, 0.1);
+        }
+    Simulation s = c.start(GetParam());
+    s.run(20000);
+    const Frame f = s.frame();
+    double fastest[5] = {};
+    for (std::size_t i = 0; i < f.size(); ++i) fastest[f.id[i] / pile.size()] = std::max(fastest[f.id[i] / pile.size()], double{length(f.velocity[i])});
+    EXPECT_LT(fastest[2], 1e-3);  // one grain rolls on, with nothing to stop it
+    for (const int k : {0, 1, 3, 4}) EXPECT_EQ(fastest[k], fastest[2]) << places[k];
+}
+
 TEST_P(OnTerrain, ParticlesThatLeaveAreTakenOutAndListed) {
     Case c = on_terrain(level(6, 0));
     for (int k = 0; k < 5; ++k) c.add({2.5, 0.5 + k, 0.1}, 0.1, {k == 2 ? 0.0 : 4.0, 0, 0}, {0, k == 2 ? 0.0 : 40.0, 0});
