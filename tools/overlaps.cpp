@@ -78,7 +78,7 @@ void find_planes(const Scene& scene, const InitialState& s, Overlaps& found) {
 void find_surfaces(const Scene& scene, const InitialState& s, Overlaps& found) {
     if (scene.meshes.empty() && !scene.terrain) return;
     const Box box = *bounds(s);
-    const PositionScale scale{1, (box.lower + box.upper) * 0.5};
+    const PositionScale scale{0x1p-30, (box.lower + box.upper) * 0.5};  // heights are rounded to the unit
     Facets facets(Device::cpu);
     build_facets(scene, scale, facets);
     place_facets(scene, scale, 0, 1, facets);
@@ -87,17 +87,16 @@ void find_surfaces(const Scene& scene, const InitialState& s, Overlaps& found) {
         const Surface& surface = shapes.surfaces[q];
         for (std::uint32_t i = 0; i < s.size(); ++i) {
             const Vec3d x = facets.now.data()[q].into(s.positions[i] - scale.origin);
-            double deepest = 0, area = 0, depth = 0;
+            double deepest = 0, pressed = 0;
             shapes.for_each_near(q, x, s.radii[i], [&](std::uint32_t id) {
                 Triangle t = shapes.facet(surface, id);
                 const Section at = shapes.section_of(surface, id, t, x, s.radii[i]);
-                const double distance = surface.terrain ? at.distance : std::fabs(at.distance);
-                const double part = at.rim ? 0 : at.share * (s.radii[i] - at.distance) * (s.radii[i] + at.distance);
-                area += part;
-                depth += part * (s.radii[i] - distance);
-                if (part > 0 && at.share > 0.5f) deepest = std::max(deepest, s.radii[i] - distance);
+                if (at.rim) return;
+                const double depth = s.radii[i] - (surface.terrain ? at.distance : std::fabs(at.distance));
+                pressed += at.share * depth;  // a ridge that is hardly touched pushes hardly, however deep below its flank's plane
+                if (at.share > 0.5f) deepest = std::max(deepest, depth);
             });
-            if (area > 0) deepest = std::max(deepest, depth / area);
+            deepest = std::max(deepest, pressed);
             if (!(deepest > 0)) continue;
             ++found.with_surfaces;
             const double ratio = deepest / s.radii[i];

@@ -27,6 +27,8 @@ struct ElevationGrid {
     double height(double x, double y) const;
     /// Length along the surface over length in the map, along the steepest way: 1 on the level.
     double steepness(double x, double y) const;
+    /// Rise over run along x, y (and 0) of the triangle at a point; beyond the rim that of the nearest one.
+    Vec3d slope(double x, double y) const;
     /// The same surface with every cell cut into factor x factor by cubic interpolation (Catmull-Rom): a smoother one.
     ElevationGrid refined(std::int64_t factor) const;
 };

@@ -13,8 +13,6 @@
 namespace grainray::scene {
 namespace {
 
-constexpr double directions[8][2] = {{1, 0}, {-1, 0}, {0, 1}, {0, -1}, {0.7071, 0.7071}, {-0.7071, 0.7071}, {0.7071, -0.7071}, {-0.7071, -0.7071}};
-
 class Slide {
 public:
     Slide(const Scene& scene, const ParticleGroup& group, const Release& release) : ground_(load_ground(scene)), thickness_(release.thickness) {
@@ -70,15 +68,38 @@ public:
     }
     const ElevationGrid& ground() const { return ground_; }
 
-    /// Lowest centre of a sphere above a point that does not reach into the ground around it.
+    /// Lowest centre of a sphere above a point that does not reach into the ground: where each triangle, edge and node near
+    /// by would touch it, the surface is asked for its height.
     double resting_height(double x, double y, double radius) const {
-        double lowest = ground_.height(x, y) + radius * ground_.steepness(x, y);
-        for (const double part : {0.4, 0.7, 0.95})
-            for (int k = 0; k < 8; ++k) {
-                const double dx = part * radius * directions[k][0], dy = part * radius * directions[k][1], z = ground_.height(x + dx, y + dy);
-                if (!std::isnan(z)) lowest = std::max(lowest, z + radius * std::sqrt(1 - part * part));
+        double lowest = ground_.height(x, y);
+        const auto ask = [&](double dx, double dy) {
+            const double z = ground_.height(x + dx, y + dy), rest = radius * radius - dx * dx - dy * dy;
+            if (!std::isnan(z) && rest > 0) lowest = std::max(lowest, z + std::sqrt(rest));
+        };
+        const auto ask_edge = [&](double from_x, double from_y, double ux, double uy, double rise) {
+            const double along = (x - from_x) * ux + (y - from_y) * uy, beside = (x - from_x) * uy - (y - from_y) * ux;
+            const double rest = radius * radius - beside * beside;
+            if (!(rest > 0)) return;
+            const double to = along + std::sqrt(rest) * rise / std::sqrt(1 + rise * rise);
+            ask(from_x + to * ux - x, from_y + to * uy - y);
+        };
+        const double dx = ground_.dx, dy = ground_.dy, diagonal = std::hypot(dx, dy);
+        const auto first = [&](double at, double start, double cell) { return static_cast<std::int64_t>(std::floor((at - radius - start) / cell)); };
+        const auto last = [&](double at, double start, double cell) { return static_cast<std::int64_t>(std::floor((at + radius - start) / cell)) + 1; };
+        for (std::int64_t j = first(y, ground_.y, dy); j <= last(y, ground_.y, dy); ++j)
+            for (std::int64_t i = first(x, ground_.x, dx); i <= last(x, ground_.x, dx); ++i) {
+                const double ex = ground_.x + static_cast<double>(i) * dx, ey = ground_.y + static_cast<double>(j) * dy;
+                const Vec3d below = ground_.slope(ex + 2 * dx / 3, ey + dy / 3), above = ground_.slope(ex + dx / 3, ey + 2 * dy / 3);
+                for (const Vec3d& slope : {below, above}) {
+                    const double arm = radius / std::sqrt(1 + dot(slope, slope));
+                    ask(arm * slope.x, arm * slope.y);
+                }
+                ask_edge(ex, ey, 1, 0, below.x);
+                ask_edge(ex, ey, 0, 1, above.y);
+                ask_edge(ex, ey, dx / diagonal, dy / diagonal, (below.x * dx + below.y * dy) / diagonal);
+                ask(ex - x, ey - y);
             }
-        return lowest;
+        return lowest + 1e-6 * radius;
     }
 
 private:
@@ -130,14 +151,17 @@ void place_release(const Scene& scene, const ParticleGroup& group, const Release
     const std::size_t first = state.size();
     std::uint64_t n = 0;
     slide.each_column(spacing, [&](double column_x, double column_y, std::int64_t number) {
-        const double steep = slide.ground().steepness(column_x, column_y), rise = std::sqrt(2 * (steep * steep - 1)) * release.jitter;
-        const double lowest = slide.resting_height(column_x, column_y, radius) + rise;
+        const std::size_t foot = state.size();
+        double lowest = slide.resting_height(column_x, column_y, radius);
         for (std::int64_t k = 0; k < number; ++k, ++n) {
             double x = column_x + release.jitter * random.uniform(2 * n), y = column_y + release.jitter * random.uniform(2 * n + 1);
             if (std::isnan(slide.ground().height(x, y))) x = column_x, y = column_y;  // shifted off the ground
-            state.positions.push_back({x, y, lowest + static_cast<double>(k) * spacing});
+            const double height = static_cast<double>(k) * spacing;
+            lowest = std::max(lowest, slide.resting_height(x, y, radius) - height);
+            state.positions.push_back({x, y, height});
             state.radii.push_back(radius);
         }
+        for (std::size_t i = foot; i < state.size(); ++i) state.positions[i].z += lowest;
     });
     if (state.size() == first)
         throw InputError(fmt::format("{}: the spacing of {:.4g} m is too wide for what slides, not one particle fits; give a smaller spacing", place_of(scene, group), spacing));

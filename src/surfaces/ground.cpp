@@ -23,13 +23,18 @@ double ElevationGrid::height(double px, double py) const {
     return corner + t * (at(i, j + 1) - corner) + s * (opposite - at(i, j + 1));
 }
 
-double ElevationGrid::steepness(double px, double py) const {
+Vec3d ElevationGrid::slope(double px, double py) const {
     const double u = std::clamp((px - x) / dx, 0.0, static_cast<double>(columns - 1)), v = std::clamp((py - y) / dy, 0.0, static_cast<double>(rows - 1));
     const auto i = std::min(static_cast<std::int64_t>(u), columns - 2), j = std::min(static_cast<std::int64_t>(v), rows - 2);
     const bool lower = u - static_cast<double>(i) >= v - static_cast<double>(j);
     const double gx = (lower ? at(i + 1, j) - at(i, j) : at(i + 1, j + 1) - at(i, j + 1)) / dx;
     const double gy = (lower ? at(i + 1, j + 1) - at(i + 1, j) : at(i, j + 1) - at(i, j)) / dy;
-    return std::sqrt(1 + gx * gx + gy * gy);
+    return {gx, gy, 0};
+}
+
+double ElevationGrid::steepness(double px, double py) const {
+    const Vec3d g = slope(px, py);
+    return std::sqrt(1 + dot(g, g));
 }
 
 namespace {

@@ -212,6 +212,26 @@ TEST_F(Folder, ReleaseFillsBetweenBeforeAndAfter) {
     EXPECT_EQ(again.positions[77], counted.positions[77]);
 }
 
+TEST_F(Folder, ReleaseStandsClearOfRuggedGround) {
+    Dice dice(9);
+    ElevationGrid after = level(21, 0), before = after;
+    for (std::size_t k = 0; k < after.heights.size(); ++k) before.heights[k] = 3 + (after.heights[k] = dice(0, 2));
+    surfaces::write_esri_grid(folder / "after.asc", after);
+    surfaces::write_esri_grid(folder / "before.asc", before);
+    const InitialState s = place_particles(scene("after = \"after.asc\"\nbefore = \"before.asc\"\n[particles.slide]\ntype = \"release\"\nmaterial = \"rock\"\n"
+                                                 "count = 3000\njitter = 0.03\n"));
+    const ElevationGrid ground = surfaces::read_grid_file(folder / "after.asc", "");
+    const double r = s.radii[0];
+    double deepest = 0;
+    for (const Vec3d& x : s.positions)
+        for (double dy = -r; dy < r; dy += r / 12)
+            for (double dx = -r; dx < r; dx += r / 12) {
+                const double rest = r * r - dx * dx - dy * dy, z = ground.height(x.x + dx, x.y + dy);
+                if (rest > 0 && !std::isnan(z)) deepest = std::max(deepest, z + std::sqrt(rest) - x.z);
+            }
+    EXPECT_EQ(deepest, 0);
+}
+
 TEST_F(Folder, ReleaseInsideAnOutline) {
     surfaces::write_esri_grid(folder / "after.asc", level(21, 5));
     write("outline.csv", "x,y\n2,2\n12,2\n12,7\n2,7\n");
