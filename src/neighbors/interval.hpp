@@ -29,7 +29,7 @@ public:
 
     /// interval, skin > 0: fixed. candidate_share: what an entry that does not touch costs of one on average.
     explicit IntervalTuner(double interval = 0, double skin = 0, double candidate_share = 0.6)
-        : interval_(interval > 0 ? interval : 16), skin_(skin > 0 ? skin : 0.03), interval_fixed_(interval > 0), skin_fixed_(skin > 0),
+        : interval_(interval > 0 ? interval : 24), skin_(skin > 0 ? skin : 0.03), interval_fixed_(interval > 0), skin_fixed_(skin > 0),
           candidate_share_(candidate_share) {}
 
     double interval() const { return interval_; }
