@@ -142,6 +142,7 @@ SearchReport Simulation::search() const {
     SearchReport r;
     r.backend = s.search.backend();
     r.reason = s.search.reason();
+    if (const std::string lists = s.tuner.reason(); !lists.empty()) r.reason += "; " + lists;
     r.rebuilds = s.rebuilds;
     if (s.rebuilds) r.mean_interval_steps = static_cast<double>(s.steps_since_start) / static_cast<double>(s.rebuilds);
     if (s.state.size() == 0 || s.rebuilds == 0) return r;

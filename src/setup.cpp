@@ -143,8 +143,8 @@ Simulation::Impl::Impl(const Scene& s, const SimulationOptions& o, const Positio
     if (n) smallest_radius = *std::min_element(sizes.radii.begin(), sizes.radii.end());
     state.quanta = Quanta::for_scale(stiffest, largest);
     constants = {static_cast<float>(scene.dt), convert<float>(scene.gravity), static_cast<float>(scene.contact.mass_damping)};
-    if (scene.search.skin > 0) margin_rule.least = static_cast<float>(scene.search.skin);
-    tuner = IntervalTuner(scene.search.interval);
+    tuner = IntervalTuner(scene.search.interval, scene.search.skin, options.device == Device::cpu ? 0.2 : 0.6);
+    margin_rule.least = static_cast<float>(tuner.skin());
     margin_rule.interval = static_cast<float>(tuner.interval());
     margin_rule.most_units = static_cast<float>(largest / scale.unit);
     margin_rule.trigger = scene.search.trigger == Trigger::published ? 2.0f : 1.0f;

@@ -69,9 +69,11 @@ void Simulation::Impl::run(std::uint64_t steps) {
 }
 
 void Simulation::Impl::tune_interval() {
-    tuner.finished(state.age.steps, state.grains.partners.size(), profile.neighbors - list_start.neighbors,
-                   profile.contacts + profile.fused - list_start.contacts - list_start.fused);
+    tuner.finished({static_cast<double>(state.age.steps), static_cast<double>(state.grains.partners.size()), static_cast<double>(state.size()), state.age.margin,
+                    state.age.steps < state.age.limit, profile.neighbors - list_start.neighbors,
+                    profile.contacts + profile.fused - list_start.contacts - list_start.fused});
     margin_rule.interval = static_cast<float>(tuner.interval());
+    margin_rule.least = static_cast<float>(tuner.skin());
     usual_life += 0.3 * (state.age.steps - usual_life);
     list_start = profile;
 }

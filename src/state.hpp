@@ -32,6 +32,7 @@ struct ListAge {
     std::uint32_t steps = 0;  ///< since the build
     std::uint32_t limit = 0;  ///< shear between frames and moving planes are covered for this many steps
     bool outdated = true;
+    double margin = 0;        ///< margins of all particles over their radii
 };
 
 struct State {
@@ -74,7 +75,7 @@ struct StepConstants {
 
 /// How margins are chosen; see src/neighbors/verlet.cpp.
 struct MarginRule {
-    float least = 0.03f;      ///< of the particle's radius
+    float least = 0;          ///< of the particle's radius
     float spread = 0.5f;      ///< standard deviations of the surroundings' velocity added to the particle's own speed
     float interval = 20;      ///< steps the list is meant to last
     float most_units = 0;     ///< the largest radius: margins beyond it would outgrow the near words

@@ -1,6 +1,7 @@
 // grainray bench step: the time of a step, stage by stage.
 #include <chrono>
 #include <cstdio>
+#include <ctime>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -43,6 +44,16 @@ struct Measured {
     double wall_seconds;
     Profile profile;
     SearchReport search;
+};
+
+/// Time since it was made: of the clock, and of the processor, all threads together.
+struct Stopwatch {
+    std::chrono::steady_clock::time_point start = std::chrono::steady_clock::now();
+    std::clock_t processor = std::clock();
+    nlohmann::ordered_json json() const {
+        return {{"seconds", std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count()},
+                {"processor_seconds", static_cast<double>(std::clock() - processor) / CLOCKS_PER_SEC}};
+    }
 };
 
 Measured measure(Simulation& simulation, std::int64_t warmup, std::int64_t steps) {
@@ -147,9 +158,13 @@ int bench_step(const Options& options) {
     const ThreadLimit limit(options.engine.threads);
     const Scene scene = scene_for(options);
     const Engine engine = choose_engine(options.engine, scene);
-    Simulation simulation(scene, place_checked(scene), engine.options);
+    const InitialState initial = place_checked(scene);
+    const Stopwatch whole;
+    Simulation simulation(scene, initial, engine.options);
     const Measured m = measure(simulation, warmup, steps);
+    const auto start_and_steps = whole.json();
     auto json = report(simulation, options, m);
+    json["start_and_steps"] = start_and_steps;
     if (simulation.device() == Device::cuda) json["traffic"] = traffic_json(simulation, m, copy_bandwidth());
     print_table(json, m);
     if (!options.json.empty()) write_text_atomically(options.json, json.dump(2) + '\n');

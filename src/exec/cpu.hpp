@@ -135,8 +135,7 @@ public:
                 kept[start] = static_cast<std::uint32_t>(end - start - 1);
                 visit(k, Row{&kept[start]});
             }
-            kept.resize(end);
-            kept_[c] = std::move(kept);
+            kept_[c].assign(kept.begin(), kept.begin() + static_cast<std::ptrdiff_t>(end));  // as small as it can be: all stay until the list is filled
         }, 1);
     }
     template <class Visit>

@@ -36,6 +36,11 @@ public:
     virtual std::string note() const { return {}; }
 };
 
+/// Points that a search by cells looks at.
+struct Effort {
+    double mean = 0, most = 0;  ///< for one point: on average, and for the one with most
+};
+
 /// Whether a back end works here, and one sentence: what it runs on, or why it is off and what to do.
 struct Status {
     bool available;
@@ -49,6 +54,7 @@ using PackFunction = void (*)(const Points&, const Request&, const char* what, P
 
 namespace grainray::cpu {
 void pack_points(const Points&, const neighbors::Request&, const char* what, neighbors::Packed&);
+neighbors::Effort cells_effort(const neighbors::Packed& asking, const neighbors::Packed& points, bool of_queries, const neighbors::Request&);
 std::unique_ptr<neighbors::Backend> make_brute();
 std::unique_ptr<neighbors::Backend> make_cells();
 std::unique_ptr<neighbors::Backend> make_embree();
@@ -58,10 +64,13 @@ neighbors::Status embree_status();
 
 namespace grainray::cuda {
 void pack_points(const Points&, const neighbors::Request&, const char* what, neighbors::Packed&);
+neighbors::Effort cells_effort(const neighbors::Packed& asking, const neighbors::Packed& points, bool of_queries, const neighbors::Request&);
 /// What is put into stream `second` from now on begins after what stream `first` holds now. Null: the default stream.
 void order_streams(void* first, void* second);
 std::unique_ptr<neighbors::Backend> make_brute();
 std::unique_ptr<neighbors::Backend> make_cells();
+/// False on GPUs that are known to trace rays in software; OptiX is not asked, since its start takes a second.
+bool may_have_ray_cores();
 std::unique_ptr<neighbors::Backend> make_optix();
 std::unique_ptr<neighbors::Backend> make_optix_published();
 neighbors::Status optix_status();

@@ -1,6 +1,6 @@
-// What `auto` takes: the candidate that took least time on the caller's own points. All are measured on the first search,
-// and again when the points have changed enough, as long as measuring stays a small share of the time spent searching. The
-// choice changes the time alone, never the list.
+// What `auto` takes: the candidate that took least time on the caller's own points. Those that can win are measured on the
+// first search, and again when the points have changed enough, as long as measuring stays a small share of the time spent
+// searching. The choice changes the time alone, never the list.
 #pragma once
 
 #include <algorithm>
@@ -23,28 +23,31 @@ public:
         std::string name;
         double seconds = 0;  ///< of a search when last measured; 0: never
         Facts at;            ///< what it was measured on
+        std::string why_not; ///< why the last round left it out; empty: it did not, or it is not here
     };
 
     explicit Choice(std::vector<std::string> names) {
-        for (std::string& name : names) candidates_.push_back({std::move(name), 0, {}});
+        for (std::string& name : names) candidates_.push_back({std::move(name), 0, {}, {}});
     }
 
     const std::vector<Candidate>& candidates() const { return candidates_; }
     std::size_t best() const { return best_; }
 
-    /// Those to measure now; none: take the best.
-    std::vector<std::size_t> due(const Facts& now) const {
-        std::vector<std::size_t> all;
-        if (candidates_.size() < 2) return all;
+    /// Whether a round of measuring is due; else take the best.
+    bool due(const Facts& now) const {
+        const double least = candidates_[best_].seconds;
+        if (candidates_.size() < 2 || least == 0) return candidates_.size() > 1;
+        if (!differ(now, candidates_[best_].at, 1.5) || contenders(now).size() < 2) return false;
         double forecast = 0;
-        for (std::size_t c = 0; c < candidates_.size(); ++c) {
-            if (hopeless(candidates_[c], now)) continue;
-            all.push_back(c);
-            forecast += 2 * candidates_[c].seconds;
-        }
-        const bool first = candidates_[best_].seconds == 0, changed = !first && differ(now, candidates_[best_].at, 1.5);
-        const bool affordable = spent_measuring_ + forecast <= share * spent_searching_;
-        return first || (changed && affordable && all.size() > 1) ? all : std::vector<std::size_t>{};
+        for (const std::size_t c : contenders(now)) forecast += 2 * (candidates_[c].seconds > 0 ? candidates_[c].seconds : hopeless_factor * least);
+        return spent_measuring_ + forecast <= share * spent_searching_;
+    }
+    /// Those that were not far behind when last measured.
+    std::vector<std::size_t> contenders(const Facts& now) const {
+        std::vector<std::size_t> all;
+        for (std::size_t c = 0; c < candidates_.size(); ++c)
+            if (!hopeless(candidates_[c], now)) all.push_back(c);
+        return all;
     }
 
     /// A candidate whose first search, which also makes its memory, took this long need not be searched with again.
@@ -56,7 +59,12 @@ public:
     void measured(std::size_t c, double seconds, const Facts& at) {
         candidates_[c].seconds = std::max(seconds, 1e-9);
         candidates_[c].at = at;
+        candidates_[c].why_not.clear();
         if (candidates_[best_].seconds == 0) best_ = c;
+    }
+    void left_out(std::size_t c, std::string why_not) {
+        candidates_[c].seconds = 0;
+        candidates_[c].why_not = std::move(why_not);
     }
     /// A round is over that cost this much more than one search would have; the first is free.
     void finished_round(double extra_seconds) {
@@ -68,14 +76,13 @@ public:
 
     /// "measured 0.31 ms a search against 2.4 ms by rays".
     std::string reason() const {
-        std::string text = "measured " + milliseconds(candidates_[best_].seconds) + " ms a search";
-        const char* before = " against ";
+        std::string rivals, without;
         for (const Candidate& c : candidates_) {
-            if (&c == &candidates_[best_] || c.seconds == 0) continue;
-            text += before + milliseconds(c.seconds) + " ms by " + c.name;
-            before = " and ";
+            if (&c != &candidates_[best_] && c.seconds > 0) rivals += (rivals.empty() ? " against " : " and ") + milliseconds(c.seconds) + " ms by " + c.name;
+            if (!c.why_not.empty()) without += (without.empty() ? "" : "; ") + c.name + " left out: " + c.why_not;
         }
-        return text;
+        if (rivals.empty()) return without.empty() ? "the only one here for many points" : without;
+        return "measured " + milliseconds(candidates_[best_].seconds) + " ms a search" + rivals + (without.empty() ? "" : "; ") + without;
     }
 
 private:

@@ -1,6 +1,7 @@
 // NeighborSearch: packs the caller's points, takes the back end asked for or the one that measures fastest, and runs it.
 #include <chrono>
 #include <cmath>
+#include <cstdio>
 #include <functional>
 #include <map>
 
@@ -21,11 +22,25 @@ void pack(Device device, const Points& points, const neighbors::Request& request
     cpu::pack_points(points, request, what, packed);
 }
 
-std::vector<std::string> candidates(Device device) {
+neighbors::Effort cells_effort(Device device, const neighbors::Packed& asking, const neighbors::Packed& points, bool of_queries, const neighbors::Request& request) {
+#ifdef GRAINRAY_HAS_CUDA
+    if (device == Device::cuda) return cuda::cells_effort(asking, points, of_queries, request);
+#endif
+    (void)device;
+    return cpu::cells_effort(asking, points, of_queries, request);
+}
+
+std::vector<std::string> candidates() {
     std::vector<std::string> names;
     for (const neighbors::Row& row : neighbors::registry())
-        if (row.automatic && row.status(device).available) names.push_back(row.name);
+        if (row.automatic) names.push_back(row.name);
     return names;
+}
+
+std::string looks_text(const neighbors::Effort& e) {
+    char text[96];
+    std::snprintf(text, sizeof text, "cells look at %.3g points for each and at %.3g at most", e.mean, e.most);
+    return text;
 }
 
 neighbors::Facts facts(const neighbors::Packed& points, std::size_t entries) {
@@ -93,18 +108,34 @@ struct NeighborSearch::Impl {
         return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     }
 
-    /// Measures each of `due`; the list is right in any case.
-    void measure(neighbors::Choice& choice, const std::vector<std::size_t>& due, const neighbors::Facts& now, const Run& run, const NeighborList& list) {
+    /// Those of the candidates that are here and can win; for the others the choice is told why not.
+    std::vector<std::size_t> field(neighbors::Choice& choice, const neighbors::Facts& now, bool of_queries) {
+        const neighbors::Effort effort = cells_effort(device, of_queries ? queries : points, points, of_queries, request());
+        std::vector<std::size_t> all;
+        for (const std::size_t c : choice.contenders(now)) {
+            const neighbors::Row& row = *neighbors::find_row(choice.candidates()[c].name);
+            if (row.can_win && !row.can_win(device, effort)) choice.left_out(c, looks_text(effort));
+            else if (!row.status(device).available) choice.left_out(c, {});
+            else all.push_back(c);
+        }
+        return all;
+    }
+
+    /// Measures those that can win; the list is right in any case.
+    void measure(neighbors::Choice& choice, const neighbors::Facts& now, bool of_queries, const Run& run, const NeighborList& list) {
         const auto start = std::chrono::steady_clock::now();
+        const std::vector<std::size_t> racing = field(choice, now, of_queries);
         bool last_failed = false;
-        for (const std::size_t c : due) {
+        for (const std::size_t c : racing) {
             const std::string& name = choice.candidates()[c].name;
             try {
                 double seconds = timed(run, name, list);
-                if (!choice.out_of_the_race(seconds)) seconds = timed(run, name, list);  // the first also made its memory
+                const bool again = racing.size() > 1 && !choice.out_of_the_race(seconds);
+                if (again) seconds = timed(run, name, list);  // the first also made its memory
                 choice.measured(c, seconds, now);
                 last_failed = false;
             } catch (const Error&) {  // out of memory, or too many points for it: the others will do
+                if (racing.size() == 1) throw;
                 choice.measured(c, 1e9, now);
                 last_failed = true;
             }
@@ -123,15 +154,15 @@ struct NeighborSearch::Impl {
         if (options.backend != "auto") return run_with(options.backend, "asked for", run);
         if (n < brute_is_faster_below) return run_with("brute", "fewer than " + std::to_string(brute_is_faster_below) + " points", run);
         if (n < worth_measuring_from) return run_with("cells", "fewer than " + std::to_string(worth_measuring_from) + " points, too few to measure", run);
-        const auto [at, is_new] = choices.try_emplace(of_queries, candidates(device));
+        const auto [at, is_new] = choices.try_emplace(of_queries, candidates());
         neighbors::Choice& choice = at->second;
         const neighbors::Facts now = facts(points, entries);
-        if (const auto due = choice.due(now); !due.empty()) {
-            measure(choice, due, now, run, list);
+        if (choice.due(now)) {
+            measure(choice, now, of_queries, run, list);
         } else {
             const std::string& best = choice.candidates()[choice.best()].name;
             const auto start = std::chrono::steady_clock::now();
-            run_with(best, choice.candidates().size() > 1 ? choice.reason() : "the only one here for many points", run);
+            run_with(best, choice.reason(), run);
             choice.searched(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
         }
         entries = list.neighbors.size();

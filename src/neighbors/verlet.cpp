@@ -118,6 +118,18 @@ float longest_life(const Boxes& boxes, float wanted, float radius, float blur) {
     return fmaxf(1.0f, floorf(fminf(wanted, bound)));
 }
 
+struct Widths {
+    std::int64_t margins, radii;
+};
+struct AddWidths {
+    GR_HD Widths operator()(const Widths& a, const Widths& b) const { return {a.margins + b.margins, a.radii + b.radii}; }
+};
+/// Margins of all over radii of all.
+double mean_margin(View<const Near> near, View<const Near> built) {
+    const Widths w = reduce(near.size, Widths{0, 0}, [=] GR_HD(std::size_t i) { return Widths{built[i].radius, near[i].radius}; }, AddWidths{});
+    return w.radii ? static_cast<double>(w.margins) / static_cast<double>(w.radii) : 0;
+}
+
 /// Floats for the search, relative to the periodic box where there is one; reach comes later.
 void place_points(const State& s, View<neighbors::Sphere> spheres) {
     const auto near = s.particles.near.view();
@@ -174,6 +186,7 @@ void margins(State& s, const StepConstants& constants, const MarginRule& rule, A
         // The search is exact for the floats it is given: the last term covers what rounding to them may hide.
         spheres[i].reach = reach * 1.000002f + longest * 4e-7f;
     });
+    s.age.margin = mean_margin(near, built);
 }
 
 }  // namespace grainray::GRAINRAY_EXEC

@@ -108,20 +108,44 @@ TEST(Trigger, PublishedWaitsLongerAndMayMiss) {
     EXPECT_LE(published.search().rebuilds, safe.search().rebuilds);
 }
 
-/// A stand-in for a run: lists of n steps have 100 + 2 n entries, making one costs 400 times what an entry costs a step.
-TEST(IntervalTuner, SettlesRoundTheOptimum) {
-    IntervalTuner tuner;
-    double sum = 0;
-    for (int k = 0; k < 400; ++k) {
-        const auto n = static_cast<std::uint64_t>(tuner.interval());
-        const double entries = 100 + 2.0 * static_cast<double>(n);
-        tuner.finished(n, static_cast<std::uint64_t>(entries), 400 * 0.6 * (k % 3 ? 0.7 : 1.6), entries * static_cast<double>(n));
-        if (k >= 100) sum += tuner.interval();
+/// A stand-in for a run whose lists always reach their limit: margins are the skin and 0.01 r a step, entries grow as (1 + margin)^3, an
+/// entry costs 1 a step, making a list 3.4 a particle and 1 an entry, times 60; clocks are noisy.
+struct StandIn {
+    double particles = 1000, touching = 2000;
+    double entries(double margin) const { return touching * std::pow(1 + margin, 3); }
+    double update(double margin) const { return 60 * (3.4 * particles + entries(margin)); }
+    double cost(double interval) const {  // of a step, with hardly any skin
+        const double margin = 0.01 * interval;
+        return update(margin) / interval + entries(margin);
     }
-    EXPECT_NEAR(sum / 300, std::sqrt(400 / 2.0), 5);  // argmin of 400 / n + 2 n
-    IntervalTuner fixed(33);
-    fixed.finished(10, 10, 1, 1);
+};
+
+TEST(IntervalTuner, SettlesRoundTheOptimum) {
+    const StandIn world;
+    IntervalTuner tuner(0, 0, 1);
+    double sum = 0, least = 1e300;
+    for (int k = 0; k < 400; ++k) {
+        const double n = std::floor(tuner.interval()), margin = tuner.skin() + 0.01 * n, noise = k % 3 ? 0.7 : 1.6;
+        tuner.finished({n, world.entries(margin), world.particles, margin, false, noise * world.update(margin), world.entries(margin) * n});
+        if (k >= 100) sum += world.cost(tuner.interval());
+    }
+    for (double n = 4; n <= 200; ++n) least = std::min(least, world.cost(n));
+    EXPECT_LT(sum / 300, 1.02 * least);
+    EXPECT_LT(tuner.skin(), 0.011);  // nobody leaves early
+}
+
+TEST(IntervalTuner, WidensMarginsWhereListsEndEarlyAndCostMuch) {
+    IntervalTuner tuner, dear;
+    for (int k = 0; k < 20; ++k) {
+        tuner.finished({10, 3000, 1000, tuner.skin(), true, 10, 0.1});
+        dear.finished({10, 3000, 1000, dear.skin(), true, 0.01, 10});
+    }
+    EXPECT_GT(tuner.skin(), 0.2);
+    EXPECT_LT(dear.skin(), 0.02);
+    IntervalTuner fixed(33, 0.1);
+    fixed.finished({10, 3000, 1000, 0.1, true, 10, 0.1});
     EXPECT_EQ(fixed.interval(), 33);
+    EXPECT_EQ(fixed.skin(), 0.1);
 }
 
 TEST(Lists, ACoherentFallNeedsFewRebuilds) {

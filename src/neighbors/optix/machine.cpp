@@ -172,3 +172,15 @@ void Machine::check(OptixResult result, const char* what) const {
 }
 
 }  // namespace grainray::optix
+
+namespace grainray::cuda {
+
+bool may_have_ray_cores() {
+    int device = 0, major = 0, minor = 0;
+    if (cudaGetDevice(&device) || cudaDeviceGetAttribute(&major, cudaDevAttrComputeCapabilityMajor, device) ||
+        cudaDeviceGetAttribute(&minor, cudaDevAttrComputeCapabilityMinor, device))
+        return true;
+    return !(minor == 0 && (major == 7 || major == 8 || major == 9 || major == 10));  // V100, A100, H100 and H200, B200
+}
+
+}  // namespace grainray::cuda
