@@ -173,8 +173,8 @@ void add_render(CLI::App& app, Action& chosen) {
     command.option("--up", o->up, "X,Y,Z", "Direction that is up in the picture");
     command.option("--fov", o->field_of_view, "DEGREES", "Vertical field of view, degrees");
     command.option("--size", o->size, "WxH", "Pixels");
-    command.footer("Examples: grainray render column/frames/000004.vtp --color-by coordination --eye 8,-20,6 --size 1920x1080\n"
-                   "          grainray render slide --sheet slide.png --times 0,5,20,40,70,100 --movie slide.mp4");
+    command.footer("Example: grainray render column/frames/000004.vtp --color-by coordination --eye 8,-20,6 --size 1920x1080\n"
+                   "         grainray render slide --sheet slide.png --times 0,5,20,40,70,100 --movie slide.mp4");
     command.action([o] { return render_frames(*o); });
 }
 
