@@ -22,6 +22,7 @@ void add_check(CLI::App&, Action& chosen);
 void add_info(CLI::App&, Action& chosen);
 void add_terrain(CLI::App&, Action& chosen);
 void add_render(CLI::App&, Action& chosen);
+void add_deposit(CLI::App&, Action& chosen);
 void add_bench(CLI::App&, Action& chosen);            ///< and below it:
 void add_bench_step(CLI::App& bench, Action& chosen);
 void add_bench_neighbors(CLI::App& bench, Action& chosen);

@@ -42,6 +42,7 @@ void add_commands(CLI::App& app, Action& chosen) {
     add_check(app, chosen);
     add_info(app, chosen);
     add_render(app, chosen);
+    add_deposit(app, chosen);
     add_terrain(app, chosen);
     add_bench(app, chosen);
     add_validate(app, chosen);

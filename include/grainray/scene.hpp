@@ -198,6 +198,8 @@ struct RenderSettings {
     std::string color_by = "speed";
     std::optional<double> color_minimum, color_maximum;
     std::int64_t width = 1280, height = 720;
+    double mesh_opacity = 0.2;           ///< of meshes: 0 not seen, 1 nothing seen through them
+    std::optional<Vec3d> mesh_cut;       ///< direction of the half of the meshes that is left out
 };
 
 struct Scene {

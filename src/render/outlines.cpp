@@ -1,4 +1,8 @@
 // Edges of planes over the traced picture.
+#include <array>
+
+#include <fmt/format.h>
+
 #include "render/overlay.hpp"
 #include "render/strokes.hpp"
 
@@ -47,7 +51,64 @@ bool fades(const Room& room, const Panel& panel, const Vec3d& p, const Vec3d& q)
     return false;
 }
 
+/// The part of an edge that is not cut away; false: there is none.
+bool cut_edge(const std::optional<Cut>& cut, Vec3d& p, Vec3d& q) {
+    if (!cut) return true;
+    const auto beyond = [&](const Vec3d& v) { return dot(v - convert<double>(cut->point), convert<double>(cut->normal)); };
+    const double a = beyond(p), b = beyond(q);
+    if (a > 0 && b > 0) return false;
+    if (a > 0) p += (q - p) * (a / (a - b));
+    else if (b > 0) q += (p - q) * (b / (b - a));
+    return true;
+}
+
+/// The lower edge of the block whose middle is nearest to the eye, from left to right in the picture.
+std::array<Vec3d, 2> near_edge(const View& view, const Box& box) {
+    const Vec3d low = box.lower, high = box.upper;
+    const Vec3d corners[4] = {{low.x, low.y, low.z}, {high.x, low.y, low.z}, {high.x, high.y, low.z}, {low.x, high.y, low.z}};
+    std::array<Vec3d, 2> best{};
+    for (int k = 0; k < 4; ++k) {
+        const Vec3d &p = corners[k], &q = corners[(k + 1) % 4];
+        // Seen across, not along: a length in the picture, not in the distance.
+        const auto length_seen = [&](const Vec3d& a, const Vec3d& b) { return std::abs(dot(b - a, view.right)) / length((a + b) * 0.5 - view.eye); };
+        const bool in_front = length((p + q) * 0.5 - view.eye) < length((low + Vec3d{high.x, high.y, low.z}) * 0.5 - view.eye);
+        if (in_front && (best[0] == best[1] || length_seen(p, q) > length_seen(best[0], best[1]))) best = {p, q};
+    }
+    if (dot(best[1] - best[0], view.right) < 0) std::swap(best[0], best[1]);
+    return best;
+}
+
 }  // namespace
+
+void draw_scale_bar(Canvas& canvas, const View& view, const Relief& relief, float unit) {
+    if (!has_text(canvas.width, canvas.height)) return;
+    auto [p, q] = near_edge(view, relief.box);
+    const double whole = length(q - p), size = tick_step(0, whole);  // a sixth of the edge or more
+    if (!(whole > 0)) return;
+    const Vec3d along = (q - p) * (1 / whole), middle = (relief.box.lower + relief.box.upper) * 0.5;
+    Vec3d outwards = cross(along, Vec3d{0, 0, 1});
+    if (dot(outwards, p - middle) < 0) outwards = -outwards;
+    const Vec3d start = p + along * (0.03 * whole) + outwards * (0.025 * whole);
+    const Spot a = view.spot(start), b = view.spot(start + along * size);
+    if (a.depth <= 0 || b.depth <= 0) return;
+    const auto pixel = [](double v) { return static_cast<float>(v); };
+    const float text = text_height(unit), tip = 5 * unit;
+    Writing writing;
+    const float half = std::max(1.1f * unit, 0.6f);
+    writing.line({pixel(a.x), pixel(a.y), pixel(b.x), pixel(b.y)}, half);
+    for (const Spot& end : {a, b}) writing.line({pixel(end.x), pixel(end.y) - tip, pixel(end.x), pixel(end.y) + tip}, half);
+    const std::string label = size >= 1000 ? fmt::format("{:g} km", size / 1000) : fmt::format("{:g} m", size);
+    writing.text(label, pixel(0.5 * (a.x + b.x)) - 0.5f * letter(label).width * text, pixel(std::max(a.y, b.y)) + 1.9f * text, text);
+    writing.print(canvas);
+}
+
+void draw_edges(Canvas& canvas, const View& view, const std::vector<Skin>& meshes, const std::optional<Cut>& cut) {
+    Stencil stencil(canvas);
+    for (const Skin& mesh : meshes)
+        for (const auto& [from, to] : mesh.edges)
+            if (Vec3d p = convert<double>(from), q = convert<double>(to); cut_edge(cut, p, q)) add_edge(stencil, canvas, view, p, q);
+    stencil.print(canvas, edge_color, 0.45f);
+}
 
 void draw_outlines(Canvas& canvas, const View& view, const Room& room) {
     Stencil faces(canvas), glass(canvas);

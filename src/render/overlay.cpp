@@ -129,14 +129,22 @@ void draw_caption(Canvas& canvas, const std::string& text) {
     writing.print(canvas);
 }
 
-std::string caption(double time, std::size_t particles) {
-    std::string count = std::to_string(particles);
+namespace {
+
+std::string with_commas(std::size_t number) {
+    std::string count = std::to_string(number);
     for (std::ptrdiff_t i = static_cast<std::ptrdiff_t>(count.size()) - 3; i > 0; i -= 3)
         count.insert(static_cast<std::size_t>(i), 1, ',');
+    return count;
+}
+
+}  // namespace
+
+std::string caption(double time, std::size_t particles, std::size_t beyond) {
     const double size = std::abs(time);
-    const std::string when = size >= 10 ? fmt::format("{:.1f}", time)
-                             : size >= 1 || size == 0 ? fmt::format("{:.2f}", time) : fmt::format("{:.3g}", time);
-    return fmt::format("t = {} s, {} particle{}", when, count, particles == 1 ? "" : "s");
+    const std::string when = size >= 10 ? fmt::format("{:.1f}", time) : size >= 1 || size == 0 ? fmt::format("{:.2f}", time) : fmt::format("{:.3g}", time);
+    const std::string all = fmt::format("t = {} s, {} particle{}", when, with_commas(particles), particles == 1 ? "" : "s");
+    return beyond == 0 ? all : fmt::format("{} ({} beyond the ground shown)", all, with_commas(beyond));
 }
 
 }  // namespace grainray::picture

@@ -6,6 +6,7 @@
 #include "render/canvas.hpp"
 #include "render/paint.hpp"
 #include "render/panels.hpp"
+#include "render/trace.hpp"
 #include "render/view.hpp"
 
 namespace grainray::picture {
@@ -22,7 +23,12 @@ void draw_outlines(Canvas&, const View&, const Room&);
 void draw_legend(Canvas&, const Paint&);
 void draw_caption(Canvas&, const std::string& text);
 
-/// "t = 12.0 s, 20,160 particles"
-std::string caption(double time, std::size_t particles);
+/// Rims and creases of meshes that are not cut away, where nothing solid stands before them.
+void draw_edges(Canvas&, const View&, const std::vector<Skin>& meshes, const std::optional<Cut>&);
+/// A round length along the near lower edge of the block, with its label. `unit`: of letters, as unit_of().
+void draw_scale_bar(Canvas&, const View&, const Relief&, float unit);
+
+/// "t = 12.0 s, 20,160 particles (12 beyond the ground shown)"
+std::string caption(double time, std::size_t particles, std::size_t beyond);
 
 }  // namespace grainray::picture

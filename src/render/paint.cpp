@@ -29,11 +29,12 @@ enum class Look { from_zero, spread, kinds };
 struct Field {
     const char *name, *needs, *title, *unit;
     Look look;
-    Values (*values)(const Frame&);
+    Values (*values)(const Frame&);  ///< nullptr: measured against the ground
 };
 
 constexpr std::array fields{
     Field{"speed", "velocity", "speed", "m/s", Look::from_zero, [](const Frame& f) { return magnitudes(f.velocity); }},
+    Field{"depth", "radius", "depth of the flow", "m", Look::from_zero, nullptr},
     Field{"radius", "radius", "radius", "m", Look::spread, [](const Frame& f) { return numbers(f.radius); }},
     Field{"velocity", "velocity", "speed", "m/s", Look::from_zero, [](const Frame& f) { return magnitudes(f.velocity); }},
     Field{"angular_velocity", "angular_velocity", "angular speed", "rad/s", Look::from_zero,
@@ -55,9 +56,15 @@ const Field& find_field(const std::string& name) {
     throw InputError(fmt::format("render.color_by = \"{}\" is no field to colour by; choose one of {}", name, fmt::join(known, ", ")));
 }
 
+/// How far the top of each grain is above the ground below it: of the grains one sees, the depth of the flow.
+Values depths(const Frame& frame, const HeightAboveGround& height) {
+    Values values(frame.size());
+    for (std::size_t i = 0; i < frame.size(); ++i) values[i] = height(frame.position[i]) + frame.radius[i];
+    return values;
+}
+
 /// The values of the spheres that are drawn.
-Values sphere_values(const Frame& frame, const Field& field, const Subject& subject) {
-    const Values all = field.values(frame);
+Values sphere_values(const Frame& frame, const Values& all, const Field& field, const Subject& subject) {
     if (all.size() != frame.size())
         throw InputError(fmt::format("render.color_by = \"{}\" needs the field \"{}\", which the frame lacks: write it too, "
                                      "or colour by another", field.name, field.needs));
@@ -129,12 +136,16 @@ double tick_step(double low, double high) {
     return power * (least <= power ? 1 : least <= 2 * power ? 2 : least <= 5 * power ? 5 : 10);
 }
 
-Paint make_paint(const Frame& frame, const Scene& scene, const RenderSettings& settings, const Subject& subject) {
+Scale joined(const Scale& a, const Scale& b) { return {std::min(a.low, b.low), std::max(a.high, b.high), a.below || b.below, a.above || b.above}; }
+
+Paint make_paint(const Frame& frame, const Scene& scene, const RenderSettings& settings, const Subject& subject, const Surroundings& surroundings,
+                 const std::optional<Scale>& shared) {
     const Field& field = find_field(settings.color_by);
-    const Values values = sphere_values(frame, field, subject);
+    const Values all = field.values ? field.values(frame) : depths(frame, HeightAboveGround(scene, surroundings, frame.time));
+    const Values values = sphere_values(frame, all, field, subject);
     Paint paint{field.title, field.unit, {}, {}, {}};
     if (values.empty()) return paint;
-    if (field.look != Look::kinds) paint.scale = choose_scale(values, field, settings);
+    if (field.look != Look::kinds) paint.scale = shared ? *shared : choose_scale(values, field, settings);
     else if (std::string(field.name) == "material") paint.kinds = material_kinds(values, scene);
 
     paint.colors.reserve(values.size());

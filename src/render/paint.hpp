@@ -7,6 +7,7 @@
 
 #include "render/math.hpp"
 #include "render/subject.hpp"
+#include "render/surroundings.hpp"
 
 namespace grainray::picture {
 
@@ -28,8 +29,12 @@ struct Paint {
     std::vector<Kind> kinds;     ///< of a category
 };
 
-/// Throws InputError: unknown color_by, a field the frame lacks, color_minimum not below color_maximum.
-Paint make_paint(const Frame&, const Scene&, const RenderSettings&, const Subject&);
+/// `shared`: the scale to use instead of the frame's own. Throws InputError: unknown color_by, a field the frame lacks,
+/// color_minimum not below color_maximum.
+Paint make_paint(const Frame&, const Scene&, const RenderSettings&, const Subject&, const Surroundings&, const std::optional<Scale>& shared);
+
+/// A scale that holds both.
+Scale joined(const Scale&, const Scale&);
 
 /// The least distance of tick marks (1, 2 or 5 times a power of ten) that cuts the range into at most six.
 double tick_step(double low, double high);

@@ -15,6 +15,13 @@ double percentile(std::vector<double>& values, double q) {
     return *nth;
 }
 
+void grow(Box& box, const Box& by) {
+    for (int axis = 0; axis < 3; ++axis) {
+        box.lower[axis] = std::min(box.lower[axis], by.lower[axis]);
+        box.upper[axis] = std::max(box.upper[axis], by.upper[axis]);
+    }
+}
+
 namespace {
 
 bool drawable(const Vec3d& p, float radius) {
@@ -46,6 +53,22 @@ Box world_bounds(const Frame& frame, const std::vector<std::uint32_t>& index) {
     return box;
 }
 
+constexpr double much_larger = 20;  // times the particles' extent: such a mesh is ground, not a vessel
+
+void find_drawable(Subject& subject, const Frame& frame) {
+    if (frame.radius.size() != frame.size())
+        throw InputError(fmt::format("the frame has {} positions but {} radii: write the field \"radius\" to draw it",
+                                     frame.size(), frame.radius.size()));
+    for (std::size_t i = 0; i < frame.size(); ++i)
+        if (drawable(frame.position[i], frame.radius[i])) subject.index.push_back(static_cast<std::uint32_t>(i));
+}
+
+void add_spheres(Subject& subject, const Frame& frame) {
+    subject.spheres.reserve(subject.index.size());
+    for (const std::uint32_t i : subject.index)
+        subject.spheres.push_back({convert<float>(frame.position[i] - subject.origin), frame.radius[i]});
+}
+
 /// Where to look when there is no particle: the domain, else a little room about the planes.
 Box bounds_without_particles(const Scene& scene, double time) {
     if (scene.domain.box) return *scene.domain.box;
@@ -56,20 +79,23 @@ Box bounds_without_particles(const Scene& scene, double time) {
 
 }  // namespace
 
-Subject make_subject(const Frame& frame, const Scene& scene) {
-    if (frame.radius.size() != frame.size())
-        throw InputError(fmt::format("the frame has {} positions but {} radii: write the field \"radius\" to draw it",
-                                     frame.size(), frame.radius.size()));
+Subject make_subject(const Frame& frame, const Scene& scene, const std::optional<Box>& meshes) {
     Subject subject;
-    for (std::size_t i = 0; i < frame.size(); ++i)
-        if (drawable(frame.position[i], frame.radius[i])) subject.index.push_back(static_cast<std::uint32_t>(i));
-
-    const Box world = subject.index.empty() ? bounds_without_particles(scene, frame.time) : world_bounds(frame, subject.index);
+    find_drawable(subject, frame);
+    Box world = subject.index.empty() ? meshes ? *meshes : bounds_without_particles(scene, frame.time) : world_bounds(frame, subject.index);
+    if (meshes && length(meshes->extent()) < much_larger * length(world.extent())) grow(world, *meshes);
     subject.origin = (world.lower + world.upper) * 0.5;
     subject.bounds = {world.lower - subject.origin, world.upper - subject.origin};
-    subject.spheres.reserve(subject.index.size());
-    for (const std::uint32_t i : subject.index)
-        subject.spheres.push_back({convert<float>(frame.position[i] - subject.origin), frame.radius[i]});
+    add_spheres(subject, frame);
+    return subject;
+}
+
+Subject make_subject_like(const Subject& other, const Frame& frame) {
+    Subject subject;
+    subject.origin = other.origin;
+    subject.bounds = other.bounds;
+    find_drawable(subject, frame);
+    add_spheres(subject, frame);
     return subject;
 }
 

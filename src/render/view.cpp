@@ -75,19 +75,55 @@ struct Fit {
 };
 
 bool inside(const Box& box, const Vec3f& p) {
+    const double tolerance = 1e-6 * length(box.extent());  // corners of meshes lie on the box, but for rounding
     for (int axis = 0; axis < 3; ++axis)
-        if (p[axis] < box.lower[axis] || p[axis] > box.upper[axis]) return false;
+        if (p[axis] < box.lower[axis] - tolerance || p[axis] > box.upper[axis] + tolerance) return false;
     return true;
 }
 
-Fit fit(const View& view, const Subject& subject, const Room& room, const Margins& margins) {
+void include_block(Fit& fit, const Relief& relief) {
+    for (const Skin* skin : {&relief.surface, &relief.sides})
+        for (std::size_t v = 0; v < skin->vertices.size(); v += skin->vertices.size() / 10000 + 1)
+            if (!std::isnan(skin->vertices[v].z)) fit.include(convert<double>(skin->vertices[v]), 0);
+}
+
+Fit fit(const View& view, const Sights& sights, const Margins& margins) {
+    const Subject& subject = sights.subject;
     Fit result(view, margins);
-    for (const Sphere& s : subject.spheres)
-        if (inside(subject.bounds, s.centre)) result.include(convert<double>(s.centre), s.radius);
-    for (const Panel& panel : room.panels)
+    const std::size_t stride = sights.relief ? subject.spheres.size() / 10000 + 1 : 1;  // the block holds them all
+    for (std::size_t k = 0; k < subject.spheres.size(); k += stride)
+        if (const Sphere& s = subject.spheres[k]; inside(subject.bounds, s.centre)) result.include(convert<double>(s.centre), s.radius);
+    for (const Panel& panel : sights.room.panels)
         for (const Vec3d& corner : panel.outline) result.include(corner, 0);
+    for (const Vec3f& corner : sights.corners)
+        if (inside(subject.bounds, corner)) result.include(convert<double>(corner), 0);
+    if (sights.relief) include_block(result, *sights.relief);
     if (result.right == Fit::lowest) result.include({}, 0.5 * subject.diagonal());
     return result;
+}
+
+/// From the lower side, a little from aside and from above: of such directions the one from which most of the particles
+/// are seen over the ground, the first of equally good ones.
+Vec3d over_terrain(View view, const Sights& sights, const Margins& margins, const Vec3d& up) {
+    const Vec3d slope = sights.relief->downhill(sights.subject), down = length(slope) > 0 ? slope : -sideways(up), across = cross(up, down);
+    const std::size_t stride = sights.subject.spheres.size() / 300 + 1;
+    Vec3d best = -down - up;
+    double most = -1;
+    for (const double elevation : {32.0, 42.0, 55.0})
+        for (const double azimuth : {35.0, -35.0, 10.0, -10.0, 60.0, -60.0}) {
+            const double a = azimuth * degree, e = elevation * degree;
+            const Vec3d from = (down * std::cos(a) + across * std::sin(a)) * std::cos(e) + up * std::sin(e);
+            aim(view, -from, up);
+            const Vec3d eye = fit(view, sights, margins).eye();
+            double seen = 0;
+            for (std::size_t k = 0; k < sights.subject.spheres.size(); k += stride) {
+                const Sphere& s = sights.subject.spheres[k];
+                seen += sights.relief->sees(convert<double>(s.centre) + up * (2.0 * static_cast<double>(s.radius)), eye);
+            }
+            const double share = seen * static_cast<double>(stride) / static_cast<double>(std::max<std::size_t>(1, sights.subject.spheres.size()));
+            if (share > most + 0.02) most = share, best = -from;
+        }
+    return best;
 }
 
 void check(const Camera& camera) {
@@ -119,10 +155,11 @@ Spot View::spot(const Vec3d& p) const {
     return {0.5 * width * (1 + dot(d, right) / (depth * tan_x)), 0.5 * height * (1 - dot(d, up) / (depth * tan_y)), depth};
 }
 
-View make_view(const RenderSettings& settings, const Subject& subject, const Room& room, const Margins& margins) {
+View make_view(const RenderSettings& settings, const Sights& sights, const Margins& margins) {
     const Camera& camera = settings.camera;
+    const Subject& subject = sights.subject;
     check(camera);
-    const double size = std::max(length(room.box.extent()), subject.diagonal());
+    const double size = std::max(length(sights.room.box.extent()), subject.diagonal());
     check_distance("eye", camera.eye, subject.origin, size);
     check_distance("target", camera.target, subject.origin, size);
     View view;
@@ -131,7 +168,8 @@ View make_view(const RenderSettings& settings, const Subject& subject, const Roo
     view.tan_y = std::tan(0.5 * camera.field_of_view * degree);
     view.tan_x = view.tan_y * view.width / view.height;
 
-    const Vec3d up = normalized(camera.up), default_direction = three_quarter(up, room.box.extent());
+    const Vec3d up = normalized(camera.up);
+    const Vec3d default_direction = sights.relief ? over_terrain(view, sights, margins, up) : three_quarter(up, sights.room.box.extent());
     const Vec3d target = camera.target ? *camera.target - subject.origin : Vec3d{};
     if (camera.eye) {
         view.eye = *camera.eye - subject.origin;
@@ -139,7 +177,7 @@ View make_view(const RenderSettings& settings, const Subject& subject, const Roo
         return view;
     }
     aim(view, default_direction, up);
-    const Fit framing = fit(view, subject, room, margins);
+    const Fit framing = fit(view, sights, margins);
     view.eye = camera.target ? target - view.forward * framing.distance(target) : framing.eye();
     return view;
 }

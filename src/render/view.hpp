@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "render/panels.hpp"
+#include "render/relief.hpp"
 #include "render/subject.hpp"
 
 namespace grainray::picture {
@@ -31,7 +32,16 @@ struct Margins {
     double left = 0.04, right = 0.04, top = 0.05, bottom = 0.05;
 };
 
-/// The camera of the settings, completed so that everything is in the picture. Throws InputError (eye = target, ...).
-View make_view(const RenderSettings&, const Subject&, const Room&, const Margins&);
+/// What a picture should show.
+struct Sights {
+    const Subject& subject;
+    const Room& room;
+    const Relief* relief = nullptr;        ///< nullptr: no terrain
+    const std::vector<Vec3f>& corners;     ///< of meshes
+};
+
+/// The camera of the settings, completed so that everything is in the picture; over terrain it stands on the lower side,
+/// where most of the particles can be seen. Throws InputError (eye = target, ...).
+View make_view(const RenderSettings&, const Sights&, const Margins&);
 
 }  // namespace grainray::picture

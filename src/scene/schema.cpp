@@ -11,7 +11,7 @@ const std::vector<std::string_view> frame_field_names{"radius", "velocity", "ang
 
 std::vector<std::string_view> color_names() {
     auto names = frame_field_names;
-    names.insert(names.begin(), "speed");
+    names.insert(names.begin(), {"speed", "depth"});
     return names;
 }
 
@@ -58,7 +58,9 @@ void add_output_tables(Schema& s) {
         field(&RenderSettings::color_minimum, {.key = "color_minimum", .text = "value of the first colour; absent: smallest in the picture"}),
         field(&RenderSettings::color_maximum, {.key = "color_maximum", .text = "value of the last colour; absent: largest in the picture"}),
         field(&RenderSettings::width, {.key = "width", .text = "pixels", .range = {16, 16384}, .typical = "1280"}),
-        field(&RenderSettings::height, {.key = "height", .text = "pixels", .range = {16, 16384}, .typical = "720"})}};
+        field(&RenderSettings::height, {.key = "height", .text = "pixels", .range = {16, 16384}, .typical = "720"}),
+        field(&RenderSettings::mesh_opacity, {.key = "mesh_opacity", .text = "of meshes; 0: not seen, 1: nothing seen through them", .range = fraction, .typical = "0.2"}),
+        field(&RenderSettings::mesh_cut, {.key = "mesh_cut", .text = "leaves out the half of the meshes towards this direction, to look inside", .typical = "[0, -1, 0]"})}};
     s.camera = {"render.camera", "Where the picture is taken from; absent: so that everything shows.", {
         field(&Camera::eye, {.key = "eye", .text = "position", .unit = unit::length}),
         field(&Camera::target, {.key = "target", .text = "point looked at", .unit = unit::length}),

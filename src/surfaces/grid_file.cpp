@@ -140,7 +140,7 @@ void write_esri_grid(const std::filesystem::path& path, const ElevationGrid& g) 
     for (std::int64_t row = g.rows; row-- > 0;)
         for (std::int64_t i = 0; i < g.columns; ++i) {
             const double h = g.at(i, row);
-            out += fmt::format("{:.4f}{}", std::isnan(h) ? -9999.0 : h, i + 1 == g.columns ? '\n' : ' ');
+            out += fmt::format("{:.6f}{}", std::isnan(h) ? -9999.0 : h, i + 1 == g.columns ? '\n' : ' ');
         }
     write_text_atomically(path, out);
 }

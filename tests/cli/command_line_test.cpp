@@ -74,7 +74,7 @@ INSTANTIATE_TEST_SUITE_P(All, WrongCommandLine, testing::ValuesIn(mistakes), [](
 
 TEST(Help, EveryCommandTeachesWithAnExample) {
     const Folder folder;
-    for (const Arguments& command : std::vector<Arguments>{{"run"}, {"check"}, {"info"}, {"render"}, {"bench"}, {"bench", "step"}, {"bench", "neighbors"}, {"validate"}}) {
+    for (const Arguments& command : std::vector<Arguments>{{"run"}, {"check"}, {"info"}, {"render"}, {"deposit"}, {"bench"}, {"bench", "step"}, {"bench", "neighbors"}, {"validate"}}) {
         Arguments arguments = command;
         arguments.push_back("--help");
         const Result r = folder.grainray(arguments);

@@ -188,7 +188,7 @@ TEST(Picture, LeavesOutWhatIsNotFinite) {
 
 TEST(Picture, WrongInputIsNamed) {
     const Frame frame = block(2);
-    EXPECT_NE(message([&] { render(frame, {}, small("sped")); }).find("speed, radius"), std::string::npos);
+    EXPECT_NE(message([&] { render(frame, {}, small("sped")); }).find("speed, depth, radius"), std::string::npos);
     Frame lacking = frame;
     lacking.velocity.clear();
     EXPECT_NE(message([&] { render(lacking, {}, small("speed")); }).find("\"velocity\""), std::string::npos);
