@@ -62,7 +62,8 @@ void Simulation::Impl::begin_exchanges(const Checkpoint* c) {
         exits.push_back({{Exit::Kind::left, terrain->lower, terrain->upper}, std::max<std::uint64_t>(1, static_cast<std::uint64_t>(std::llround(terrain_interval / scene.dt))),
                          LostParticle::left_terrain, key_of("terrain")});
     if (!c) return;
-    next_id = std::max<std::uint64_t>(c->next_id, c->id.empty() ? 0 : c->id.back() + std::uint64_t{1});
+    placed = c->placed;
+    next_id = c->next_id;
     restore(feeders, *c);
     for (ExitRun& run : exits)
         for (std::size_t k = 0; k < c->removal_key.size(); ++k)
@@ -70,6 +71,7 @@ void Simulation::Impl::begin_exchanges(const Checkpoint* c) {
 }
 
 void Simulation::Impl::keep_exchanges(Checkpoint& c) const {
+    c.placed = placed;
     c.next_id = next_id;
     for (std::uint32_t k = 0; k < feeders.size(); ++k) {
         const FeederState& s = feeders[k].state();
@@ -154,8 +156,8 @@ std::vector<Newcomer> Simulation::Impl::arrive() {
         for (const Newcomer& n : all) there.push_back({n.position, static_cast<std::int32_t>(std::llrint(n.radius / scale.unit))});
         obstacles.update(time());
         Vacancy vacancy(*region, there, obstacles, state, largest_radius, feeder.state().waiting.size());
-        const auto placed = feeder.insert(*region, vacancy, scale);
-        all.insert(all.end(), placed.begin(), placed.end());
+        const auto come = feeder.insert(*region, vacancy, scale);
+        all.insert(all.end(), come.begin(), come.end());
     }
     return all;
 }
@@ -224,8 +226,10 @@ std::vector<StreamReport> Simulation::streams() const {
 
 std::vector<RemovalReport> Simulation::removals() const {
     std::vector<RemovalReport> reports;
-    for (const ExitRun& run : impl_->exits)
-        reports.push_back({run.removal == LostParticle::left_terrain ? "terrain" : impl_->scene.removals[run.removal].name, run.particles, run.mass});
+    for (const ExitRun& run : impl_->exits) {
+        const bool of_terrain = run.removal == LostParticle::left_terrain;
+        reports.push_back({of_terrain ? "terrain" : impl_->scene.removals[run.removal].name, of_terrain, run.particles, run.mass});
+    }
     return reports;
 }
 

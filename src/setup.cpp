@@ -201,7 +201,7 @@ Simulation::Simulation(const Scene& scene, const InitialState& initial, const Si
     p.body.assign(body);
     p.remainder.assign(std::vector<Vec3f>(n));
     p.id.assign(id);
-    impl_->next_id = n;
+    impl_->placed = impl_->next_id = n;
     impl_->begin_exchanges();
     impl_->prepare();
 }

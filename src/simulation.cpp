@@ -50,6 +50,7 @@ void Simulation::Impl::run(std::uint64_t steps) {
         else step();
     }
     steps_since_start += steps;
+    particle_steps += steps * state.size();
 }
 
 /// Without a particle only time goes on.
@@ -129,6 +130,7 @@ void Simulation::run(std::uint64_t steps) {
 
 std::size_t Simulation::size() const { return impl_->state.size(); }
 std::uint64_t Simulation::step_count() const { return impl_->step_number; }
+std::uint64_t Simulation::particle_steps() const { return impl_->particle_steps; }
 double Simulation::time() const { return impl_->time(); }
 double Simulation::dt() const { return impl_->scene.dt; }
 Device Simulation::device() const { return impl_->options.device; }

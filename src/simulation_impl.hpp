@@ -55,13 +55,14 @@ struct Simulation::Impl {
     Array<float> spheres;                    ///< x y z reach, handed to the search
 
     std::uint64_t step_number = 0;
-    std::uint64_t rebuilds = 0, steps_since_start = 0;
+    std::uint64_t rebuilds = 0, steps_since_start = 0, particle_steps = 0;
     double critical_dt = 0, smallest_radius = 1;
     double largest_radius = 0;               ///< m, of all particles there ever were or may come: it sets the quanta of forces
     bool planes_move = false, meshes_move = false;
     std::vector<Feeder> feeders;             ///< of the scene's streams
     std::vector<ExitRun> exits;
     std::vector<LostParticle> lost;
+    std::uint64_t placed = 0;                ///< particles at the start of the run
     std::uint64_t next_id = 0;               ///< ids are never used again
     Obstacles obstacles{scene, state};
     Profile profile;

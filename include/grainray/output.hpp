@@ -50,6 +50,7 @@ struct Checkpoint {
     double unit = 0;                          ///< metres per fixed-point position unit
     Vec3d origin;                             ///< world position of fixed-point zero, m
     double largest_radius = 0;                ///< of all particles there ever were or may come, m
+    std::uint64_t placed = 0;                 ///< particles at the start of the run: their ids come first
     std::uint64_t next_id = 0;                ///< of the next particle to come
     std::uint64_t state_hash = 0;
     std::vector<std::uint32_t> id, material;
@@ -88,7 +89,8 @@ public:
     /// Starts a new file, or (append) keeps the rows whose first column, the time, is <= keep_until.
     HistoryFile(std::filesystem::path, const std::vector<std::string>& columns, bool append, double keep_until);
     ~HistoryFile();
-    void row(const std::vector<double>& values);
+    /// name: of the last column, where that is a text.
+    void row(const std::vector<double>& values, const std::string& name = "");
 
 private:
     struct Impl;

@@ -77,9 +77,10 @@ struct StreamReport {
     std::uint64_t waiting = 0;  ///< due, but without a place so far
     double mass = 0, waiting_mass = 0;  ///< kg
 };
-/// What a removal has taken out since the run began, restarts included. The last one may be "terrain": what left it.
+/// What a removal has taken out since the run began, restarts included. With an open terrain the last one is what left it.
 struct RemovalReport {
     std::string name;
+    bool of_terrain = false;
     std::uint64_t particles = 0;
     double mass = 0;  ///< kg
 };
@@ -105,6 +106,8 @@ public:
 
     std::size_t size() const;
     std::uint64_t step_count() const;
+    /// Steps of every particle added up, since this object was made.
+    std::uint64_t particle_steps() const;
     double time() const;
     double dt() const;
     Device device() const;

@@ -22,6 +22,7 @@ void for_each_number(C& c, Visit visit) {
     visit("unit", c.unit);
     visit("origin", c.origin);
     visit("largest_radius", c.largest_radius);
+    visit("placed", c.placed);
     visit("next_id", c.next_id);
     visit("state_hash", c.state_hash);
 }

@@ -38,6 +38,7 @@ Checkpoint sample(std::size_t particles, std::size_t contacts, std::size_t walls
     fill(c.wall_particle, walls);
     fill(c.wall_plane, walls);
     fill(c.wall_history, walls);
+    c.placed = 77;
     c.next_id = 0x123456789;
     for (auto* array : {&c.stream_key, &c.stream_since, &c.stream_drawn, &c.stream_tried, &c.stream_attempts, &c.stream_inserted}) fill(*array, 3);
     for (auto* array : {&c.stream_drawn_mass, &c.stream_inserted_mass}) fill(*array, 3);
@@ -63,6 +64,7 @@ void expect_same(const Checkpoint& a, const Checkpoint& b) {
     EXPECT_TRUE(same_bits(a.contact_a, b.contact_a) && same_bits(a.contact_b, b.contact_b));
     EXPECT_TRUE(same_bits(a.contact_history, b.contact_history) && same_bits(a.wall_history, b.wall_history));
     EXPECT_TRUE(same_bits(a.wall_particle, b.wall_particle) && same_bits(a.wall_plane, b.wall_plane));
+    EXPECT_EQ(a.placed, b.placed);
     EXPECT_EQ(a.next_id, b.next_id);
     EXPECT_TRUE(same_bits(a.stream_key, b.stream_key) && same_bits(a.stream_since, b.stream_since) && same_bits(a.stream_drawn, b.stream_drawn));
     EXPECT_TRUE(same_bits(a.stream_tried, b.stream_tried) && same_bits(a.stream_attempts, b.stream_attempts) && same_bits(a.stream_inserted, b.stream_inserted));
