@@ -17,6 +17,18 @@ int axis_left(const Domain& domain, const Vec3d& x) {
     return -1;
 }
 
+/// Whatever leaves the domain is taken out.
+bool has_outside(const Scene& scene) {
+    return std::any_of(scene.removals.begin(), scene.removals.end(), [](const Removal& r) { return r.region == RemovalRegion::outside; });
+}
+
+/// The domain as a limit; none where its outside is emptied.
+Domain limit_of(const Scene& scene) {
+    Domain domain = scene.domain;
+    if (has_outside(scene)) domain.box.reset();
+    return domain;
+}
+
 /// The lower (side -1) or upper (side 1) corner; infinite where nothing can be left.
 Vec3d domain_corner(const Domain& domain, int side) {
     Vec3d corner;
@@ -50,6 +62,7 @@ Checkpoint Simulation::checkpoint() const {
     c.largest_radius = impl_->largest_radius;
     c.scene = impl_->scene.source;
     c.state_hash = state_hash();
+    impl_->keep_exchanges(c);
     std::vector<std::uint32_t> order(n);
     std::iota(order.begin(), order.end(), 0u);
     std::sort(order.begin(), order.end(), [&](auto a, auto b) { return snap.id[a] < snap.id[b]; });
@@ -95,13 +108,15 @@ Checkpoint Simulation::checkpoint() const {
 
 std::uint64_t Simulation::state_hash() const {
     const Impl& s = *impl_;
-    if (s.state.size() == 0) return mix(0, s.step_number);
-    return mix(0, s.step_number) + s.stage.hash(s.state) + (s.state.facets.count() ? s.stage.hash_facets(s.state) : 0);
+    const std::uint64_t time = mix(0, s.step_number) + s.hash_exchanges();
+    if (s.state.size() == 0) return time;
+    return time + s.stage.hash(s.state) + (s.state.facets.count() ? s.stage.hash_facets(s.state) : 0);
 }
 
 void Simulation::check_health() const {
     const Impl& s = *impl_;
     if (s.state.size() == 0) return;
+    const Domain domain = limit_of(s.scene);
     const double speed_limit = s.scene.limits.speed > 0 ? s.scene.limits.speed : s.smallest_radius / s.scene.dt;
     const auto flags = s.state.flags.to_host();
     const bool every_step_finite = s.rebuilds == 0 || flags[1] == ~0u;
@@ -109,7 +124,7 @@ void Simulation::check_health() const {
     bool surfaces_hold = crossed == ~0ull;
     for (std::uint32_t q = 0; q < s.state.facets.count(); ++q)
         surfaces_hold = surfaces_hold && s.stage.surface_totals(s.state, s.law, q).max_overlap_ratio <= s.scene.limits.overlap;
-    if (every_step_finite && surfaces_hold && s.stage.healthy(s.state, {speed_limit, s.scene.limits.overlap, domain_corner(s.scene.domain, -1), domain_corner(s.scene.domain, 1)})) return;
+    if (every_step_finite && surfaces_hold && s.stage.healthy(s.state, {speed_limit, s.scene.limits.overlap, domain_corner(domain, -1), domain_corner(domain, 1)})) return;
     const Snapshot snap(s.state, s.law);
     const std::size_t n = snap.size();
 
@@ -124,7 +139,7 @@ void Simulation::check_health() const {
     }
     for (std::size_t i = 0; i < n && worst == n; ++i) {
         const double speed = length(convert<double>(snap.body[i].velocity)), spin = length(convert<double>(snap.body[i].spin));
-        const int axis = axis_left(s.scene.domain, snap.scale.world(snap.position(i)));
+        const int axis = axis_left(domain, snap.scale.world(snap.position(i)));
         if (std::isfinite(speed) && std::isfinite(spin) && speed <= speed_limit && axis < 0) continue;
         worst = i;
         if (axis >= 0) {

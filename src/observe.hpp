@@ -71,9 +71,6 @@ struct Snapshot {
     void for_each_facet_memory(const std::function<void(std::uint32_t i, std::uint32_t facet, const FacetState&)>&) const;
 };
 
-/// The checkpoint with the particles at these places alone, and the contacts among them.
-Checkpoint only(const Checkpoint&, const std::vector<std::uint32_t>& places);
-
 /// Into a checkpoint, and out of it as rows of an old list.
 void add_facets(const Snapshot&, Checkpoint&);
 void restore_facets(const Checkpoint&, FacetList&);

@@ -70,47 +70,6 @@ void add_facets(const Snapshot& snap, Checkpoint& c) {
     }
 }
 
-Checkpoint only(const Checkpoint& all, const std::vector<std::uint32_t>& places) {
-    Checkpoint c;
-    c.step = all.step;
-    c.time = all.time;
-    c.dt = all.dt;
-    c.unit = all.unit;
-    c.origin = all.origin;
-    c.largest_radius = all.largest_radius;
-    c.scene = all.scene;
-    std::vector<bool> stays;
-    for (const std::uint32_t p : places) {
-        const auto take = [&](auto& to, const auto& from) { to.push_back(from[p]); };
-        take(c.id, all.id), take(c.material, all.material), take(c.position, all.position), take(c.radius, all.radius), take(c.mass, all.mass);
-        take(c.radius_units, all.radius_units), take(c.velocity, all.velocity), take(c.velocity_remainder, all.velocity_remainder);
-        take(c.angular_velocity, all.angular_velocity);
-        if (all.id[p] >= stays.size()) stays.resize(all.id[p] + std::size_t{1});
-        stays[all.id[p]] = true;
-    }
-    const auto here = [&](std::uint32_t id) { return id < stays.size() && stays[id]; };
-    for (std::size_t k = 0; k < all.contact_a.size(); ++k) {
-        if (!here(all.contact_a[k]) || !here(all.contact_b[k])) continue;
-        c.contact_a.push_back(all.contact_a[k]);
-        c.contact_b.push_back(all.contact_b[k]);
-        c.contact_history.push_back(all.contact_history[k]);
-    }
-    for (std::size_t k = 0; k < all.wall_particle.size(); ++k) {
-        if (!here(all.wall_particle[k])) continue;
-        c.wall_particle.push_back(all.wall_particle[k]);
-        c.wall_plane.push_back(all.wall_plane[k]);
-        c.wall_history.push_back(all.wall_history[k]);
-    }
-    for (std::size_t k = 0; k < all.facet.size(); ++k) {
-        if (!here(all.facet_particle[k])) continue;
-        c.facet_particle.push_back(all.facet_particle[k]);
-        c.facet.push_back(all.facet[k]);
-        c.facet_side.push_back(all.facet_side[k]);
-        c.facet_history.push_back(all.facet_history[k]);
-    }
-    return c;
-}
-
 void restore_facets(const Checkpoint& c, FacetList& list) {
     std::vector<std::uint32_t> particles;
     std::vector<std::uint64_t> offsets;

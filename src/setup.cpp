@@ -29,7 +29,6 @@ const Stages& stages(Device device) {
 namespace {
 
 constexpr double pi = 3.14159265358979323846;
-constexpr double lost_interval = 0.1;  // s between two looks for lost particles
 
 PairParameters kernel_parameters(const MaterialPair& p) {
     return {static_cast<float>(p.normal_stiffness), static_cast<float>(p.tangential_stiffness), static_cast<float>(p.friction),
@@ -43,12 +42,23 @@ std::size_t material_index(const Scene& scene, const std::string& name) {
     throw InputError("material '" + name + "' is not defined in the scene");
 }
 
+/// 1 where there is none.
+double largest_of(const Scene& scene, const InitialState& s) {
+    double largest = s.radii.empty() ? 0 : *std::max_element(s.radii.begin(), s.radii.end());
+    for (const ParticleStream& stream : scene.streams) largest = std::max(largest, largest_radius(stream.size));
+    return largest > 0 ? largest : 1;
+}
+
 /// Fixed-point zero: the middle of the particles, on a coarse lattice of units so that it is exact in double.
 PositionScale scale_for(const Scene& scene, const InitialState& s) {
-    const double largest = s.radii.empty() ? 1.0 : *std::max_element(s.radii.begin(), s.radii.end());
-    PositionScale scale = PositionScale::for_radius(largest, {});
-    Vec3d lower = s.size() ? s.positions[0] : Vec3d{}, upper = lower;
-    for (const Vec3d& p : s.positions)
+    PositionScale scale = PositionScale::for_radius(largest_of(scene, s), {});
+    std::vector<Vec3d> places = s.positions;
+    for (const ParticleStream& stream : scene.streams) {
+        const Box inlet = Inlet(scene, stream).at(0)->bounds;
+        places.insert(places.end(), {inlet.lower, inlet.upper});
+    }
+    Vec3d lower = places.empty() ? Vec3d{} : places[0], upper = lower;
+    for (const Vec3d& p : places)
         for (int a = 0; a < 3; ++a) {
             lower[a] = std::min(lower[a], p[a]);
             upper[a] = std::max(upper[a], p[a]);
@@ -79,6 +89,15 @@ std::uint32_t block_size(Device device, std::size_t n, int threads) {
     const std::size_t blocks = threads == 1 ? 1 : 4 * static_cast<std::size_t>(threads);
     return static_cast<std::uint32_t>(std::max<std::size_t>((n + blocks - 1) / blocks, 512));
 }
+
+}  // namespace
+
+void Simulation::Impl::resize_blocks() {
+    state.block = block_size(options.device, state.size(), threads.count());
+    search.set_block(state.block);
+}
+
+namespace {
 
 /// Fixed-point position of particle i; an error names it.
 Vec3l fixed_position(const PositionScale& scale, const Vec3d& x, std::size_t i) {
@@ -134,13 +153,13 @@ Simulation::Impl::Impl(const Scene& s, const SimulationOptions& o, const Positio
     state.facets.parameters.assign(facets);
     build_facets(scene, scale, state.facets);
     meshes_move = facets_move(scene);
-    region = lost_region(scene, state.facets);
-    if (region) lost_every = std::max<std::uint64_t>(1, static_cast<std::uint64_t>(std::llround(lost_interval / scene.dt)));
 
-    largest_radius = sizes.radii.empty() && largest_ever == 0 ? 1 : largest_ever;
-    for (const double r : sizes.radii) largest_radius = std::max(largest_radius, r);
+    const bool some = n > 0 || !scene.streams.empty();
+    largest_radius = some || largest_ever == 0 ? std::max(largest_ever, largest_of(scene, sizes)) : largest_ever;
     const double largest = largest_radius;
-    if (n) smallest_radius = *std::min_element(sizes.radii.begin(), sizes.radii.end());
+    smallest_radius = some ? INFINITY : 1;
+    for (const double r : sizes.radii) smallest_radius = std::min(smallest_radius, r);
+    for (const ParticleStream& stream : scene.streams) smallest_radius = std::min(smallest_radius, grainray::smallest_radius(stream.size));
     state.quanta = Quanta::for_scale(stiffest, largest);
     constants = {static_cast<float>(scene.dt), convert<float>(scene.gravity), static_cast<float>(scene.contact.mass_damping)};
     tuner = IntervalTuner(scene.search.interval, scene.search.skin, options.device == Device::cpu ? 0.2 : 0.6);
@@ -182,6 +201,8 @@ Simulation::Simulation(const Scene& scene, const InitialState& initial, const Si
     p.body.assign(body);
     p.remainder.assign(std::vector<Vec3f>(n));
     p.id.assign(id);
+    impl_->placed = impl_->next_id = n;
+    impl_->begin_exchanges();
     impl_->prepare();
 }
 
@@ -194,6 +215,25 @@ InitialState sizes_of(const Checkpoint& c) {
     s.materials = c.material;
     return s;
 }
+
+/// Place in the checkpoint of ids: from a table, unless ids have become so far apart that it would outgrow the particles.
+class Places {
+public:
+    explicit Places(const std::vector<std::uint32_t>& ascending) : ids_(ascending) {
+        if (ids_.empty() || ids_.back() / 8 > ids_.size()) return;
+        table_.resize(ids_.back() + std::size_t{1}, ~0u);
+        for (std::size_t i = 0; i < ids_.size(); ++i) table_[ids_[i]] = static_cast<std::uint32_t>(i);
+    }
+    std::vector<std::uint32_t> operator()(std::vector<std::uint32_t> ids) const {
+        for (auto& id : ids)
+            id = !table_.empty() ? table_.at(id) : static_cast<std::uint32_t>(std::lower_bound(ids_.begin(), ids_.end(), id) - ids_.begin());
+        return ids;
+    }
+
+private:
+    const std::vector<std::uint32_t>& ids_;
+    std::vector<std::uint32_t> table_;
+};
 
 /// Histories sorted by (owner, partner), as one old list whose "old index" is the particle id.
 struct OldLists {
@@ -231,30 +271,25 @@ void Simulation::Impl::load(const Checkpoint& c) {
     std::vector<Near> near(n);
     std::vector<Far> far(n);
     std::vector<Body> body(n);
-    std::vector<std::uint32_t> place;  // id -> place in the checkpoint
     for (std::size_t i = 0; i < n; ++i) {
         const Vec3l& x = c.position[i];
         near[i] = {near_of(x.x), near_of(x.y), near_of(x.z), c.radius_units[i]};
         far[i] = far_of(x);
         body[i] = {c.velocity[i], c.mass[i], c.angular_velocity[i], c.material[i]};
-        if (c.id[i] >= place.size()) place.resize(c.id[i] + std::size_t{1}, ~0u);
-        place[c.id[i]] = static_cast<std::uint32_t>(i);
     }
     p.near.assign(near);
     p.far.assign(far);
     p.body.assign(body);
     p.remainder.assign(c.velocity_remainder);
     p.id.assign(c.id);
-    const auto places = [&](std::vector<std::uint32_t> ids) {
-        for (auto& id : ids) id = place.at(id);
-        return ids;
-    };
+    const Places places(c.id);
     OldLists(n, places(c.contact_a), places(c.contact_b), c.contact_history).store(old_grains);
     OldLists(n, places(c.wall_particle), c.wall_plane, c.wall_history).store(old_walls);
     restore_facets(c, state.facets.list);
     if (!stage.fused) state.wrench.resize_discard(n);
     state.wrench.clear_bytes();
     step_number = c.step;
+    begin_exchanges(&c);
     prepare();
 }
 

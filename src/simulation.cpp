@@ -3,25 +3,9 @@
 #include "observe.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 
 namespace grainray {
-namespace {
-
-/// Adds the time until its end of scope to one entry of the profile.
-class Timed {
-public:
-    explicit Timed(double& seconds) : seconds_(seconds), start_(clock::now()) {}
-    ~Timed() { seconds_ += std::chrono::duration<double>(clock::now() - start_).count(); }
-
-private:
-    using clock = std::chrono::steady_clock;
-    double& seconds_;
-    clock::time_point start_;
-};
-
-}  // namespace
 
 void Simulation::Impl::step() {
     {
@@ -66,6 +50,14 @@ void Simulation::Impl::run(std::uint64_t steps) {
         else step();
     }
     steps_since_start += steps;
+    particle_steps += steps * state.size();
+}
+
+/// Without a particle only time goes on.
+void Simulation::Impl::skip(std::uint64_t steps) {
+    step_number += steps;
+    if (planes_move) place_planes();
+    if (meshes_move) place_meshes();
 }
 
 void Simulation::Impl::tune_interval() {
@@ -94,7 +86,7 @@ void Simulation::Impl::update_lists() {
 
 /// Sort, margins, search, then the histories of the old lists into the new ones.
 void Simulation::Impl::make_lists() {
-    stage.sort(state, old_grains, old_index);
+    stage.sort(state, old_grains, rows, old_index);
     stage.margins(state, constants, margin_rule, spheres);
     const float* s = spheres.data();
     search.find(Points{s, s + 1, s + 2, 4, s + 3, 4, 0, state.particles.id.data(), state.size()}, found);
@@ -130,36 +122,23 @@ void Simulation::step() { run(1); }
 
 void Simulation::run(std::uint64_t steps) {
     Impl& s = *impl_;
-    while (steps > 0) {
-        const std::uint64_t every = s.lost_every, batch = every ? std::min(steps, every - s.step_number % every) : steps;
+    for (const std::uint64_t end = s.step_number + steps; s.step_number < end;) {
+        const std::uint64_t exchange = s.next_exchange(), batch = std::min(end, exchange) - s.step_number;
         if (s.state.size()) s.threads.run([&] { s.run(batch); });
-        else s.step_number += batch;
-        steps -= batch;
-        if (every && s.step_number % every == 0) take_out_lost();
+        else s.skip(batch);
+        if (s.step_number == exchange) s.threads.run([&] { s.exchange(); });
     }
-}
-
-/// Rare, so by the way of a restart, which is exact: what remains is the state, less the lost.
-void Simulation::take_out_lost() {
-    Impl& s = *impl_;
-    if (s.state.size() == 0 || s.stage.count_lost(s.state, *s.region) == 0) return;
-    const Checkpoint all = checkpoint();
-    const PositionScale& scale = s.state.particles.scale;
-    std::vector<std::uint32_t> kept;
-    for (std::size_t i = 0; i < all.id.size(); ++i) {
-        if (!s.region->lost(scale.local(all.position[i]), all.radius_units[i] * scale.unit)) kept.push_back(static_cast<std::uint32_t>(i));
-        else s.lost.push_back({s.step_number, s.time(), all.id[i], scale.world(all.position[i]), all.velocity[i]});
-    }
-    s.load(only(all, kept));
 }
 
 std::size_t Simulation::size() const { return impl_->state.size(); }
 std::uint64_t Simulation::step_count() const { return impl_->step_number; }
+std::uint64_t Simulation::particle_steps() const { return impl_->particle_steps; }
 double Simulation::time() const { return impl_->time(); }
 double Simulation::dt() const { return impl_->scene.dt; }
 Device Simulation::device() const { return impl_->options.device; }
 const Profile& Simulation::profile() const { return impl_->profile; }
 Profile& Simulation::profile() { return impl_->profile; }
 const std::vector<LostParticle>& Simulation::lost() const { return impl_->lost; }
+void Simulation::forget_lost() { impl_->lost.clear(); }
 
 }  // namespace grainray

@@ -1,6 +1,7 @@
 // The stage functions of each executor. Those of stages.inc are compiled once for each from one source.
 #pragma once
 
+#include "insertion/exchange.hpp"
 #include "measures.hpp"
 
 namespace grainray {
@@ -9,8 +10,9 @@ namespace grainray {
 struct Stages {
     /// What the list knows of touching pairs, row after row; the list may be made anew.
     void (*retire)(State&, ContactList& old_list);
-    /// Morton order, periodic wrap; returns the old index of every new one.
-    void (*sort)(State&, const ContactList& old_list, Array<std::uint32_t>& old_index);
+    /// Morton order, periodic wrap; returns the old index of every new one: its row in the old lists. rows: where that row is
+    /// not the index before sorting, because particles came or went; else empty.
+    void (*sort)(State&, const ContactList& old_list, const Array<std::uint32_t>& rows, Array<std::uint32_t>& old_index);
     /// Frames, margins, positions of this build, ListAge::limit; `spheres` gets 4 floats a particle: x y z reach.
     void (*margins)(State&, const StepConstants&, const MarginRule&, Array<float>& spheres);
     /// The pairs found become the list, with the histories of the old one; sign -1 where the pair stood in the other row.
@@ -47,8 +49,12 @@ struct Stages {
     std::uint64_t (*hash_facets)(const State&);
     /// Adds to what contact_fields found.
     void (*facet_fields)(const State&, ContactLaw, ContactFields&);
-    /// Particles that left an open terrain.
-    std::size_t (*count_lost)(const State&, const LostRegion&);
+
+    /// Spheres that reach into a box, images in a periodic domain included.
+    std::vector<Resident> (*residents)(const State&, const Box&);
+    std::uint64_t (*count_taken)(const State&, const std::vector<Exit>&);
+    /// Takes out of the state, but not of its lists, what one of the exits takes. rows: for sort.
+    std::vector<Departure> (*take_out)(State&, const std::vector<Exit>&, Array<std::uint32_t>& rows);
 };
 const Stages& stages(Device);
 

@@ -109,7 +109,7 @@ nlohmann::ordered_json report(const Simulation& simulation, const Options& optio
     json["scene"] = options.scene;
     json["particles"] = simulation.size();
     json["steps"] = m.steps;
-    add_speed(json, simulation.size(), m.steps, m.wall_seconds);
+    add_speed(json, simulation.size() * m.steps, m.steps, m.wall_seconds);
     json["threads"] = ThreadLimit::count();
     json["device"] = std::string(name(simulation.device()));
     json["profile"] = profile_json(m.profile);

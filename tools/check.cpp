@@ -54,6 +54,19 @@ void print_particles(const Scene& scene, const InitialState& s) {
     fmt::print("planes       {}\n", scene.planes.size());
 }
 
+std::string amount_text(const Amount& a) { return a.mass > 0 ? fmt::format("{:.6g} kg", a.mass) : fmt::format("{:.6g} particles", a.particles); }
+
+void print_exchanges(const Scene& scene, const Preflight& p) {
+    for (std::size_t k = 0; k < scene.streams.size(); ++k) {
+        const ParticleStream& s = scene.streams[k];
+        const StreamForecast& f = p.streams[k];
+        fmt::print("stream       {}: {} of material {} a second{}, every {}; {:.0f} particles, {:.6g} kg by the end; solid fraction of the inlet {:.3g}\n", s.name, amount_text(s.rate),
+                   s.material, s.total.given() ? fmt::format(" until {} have come", amount_text(s.total)) : "", counted(f.interval_steps, "step"), std::floor(f.particles), f.mass, f.fraction);
+    }
+    for (const Removal& r : scene.removals) fmt::print("removal      {}: looks every {}\n", r.name, counted(static_cast<std::uint64_t>(r.steps), "step"));
+    if (!scene.streams.empty()) fmt::print("at the end   {:.0f} particles{}; memory and disk are forecast for these\n", p.most_particles, scene.removals.empty() ? "" : " less those taken out");
+}
+
 void print_surfaces(const Scene& scene) {
     for (const Mesh& mesh : scene.meshes) {
         MeshReport r;
@@ -108,12 +121,17 @@ void print_probe(const Scene& scene, const InitialState& s, const Preflight& p, 
     }
     const double per_step = seconds / steps, n = static_cast<double>(std::max<std::size_t>(s.size(), 1));
     fmt::print("device       {} ({}), {} threads\n", name(engine.options.device), engine.device_reason, ThreadLimit::count());
-    fmt::print("memory       {} for the simulation ({:.0f} bytes a particle now), {} at most while writing\n", bytes_text(p.needs.memory_bytes),
-               static_cast<double>(simulation.memory_bytes()) / n, bytes_text(p.needs.peak_bytes));
+    fmt::print("memory       {} for the simulation{}, {} at most while writing\n", bytes_text(p.needs.memory_bytes),
+               s.size() ? fmt::format(" ({:.0f} bytes a particle now)", static_cast<double>(simulation.memory_bytes()) / n) : "", bytes_text(p.needs.peak_bytes));
     fmt::print("disk         {} ({} a frame)\n", bytes_text(p.needs.disk_bytes), bytes_text(p.needs.frame_bytes));
+    if (s.size() == 0) {
+        fmt::print("wall time    not known: the run starts without a particle\n");
+        return;
+    }
     const bool loose = simulation.statistics().coordination < 1;
     fmt::print("wall time    about {} at the speed of the first {} steps, {} particle-steps/s{}\n", duration_text(per_step * static_cast<double>(scene.steps())),
                steps, short_number(n / per_step), loose ? "; 3 to 6 times as long once the grains lie on each other" : "");
+    if (p.most_particles > n) fmt::print("             for the {} particles of the start; up to {:.0f} take longer\n", s.size(), p.most_particles);
 }
 
 int check(const Options& options) {
@@ -125,6 +143,7 @@ int check(const Options& options) {
     inspect_disk(".", preflight);
     fmt::print("scene        {}{}\n", options.scene.string(), scene.title.empty() ? "" : ": " + scene.title);
     print_particles(scene, particles);
+    print_exchanges(scene, preflight);
     print_surfaces(scene);
     print_overlaps(scene, preflight.overlaps);
     print_surface_overlap(preflight.overlaps);

@@ -115,6 +115,48 @@ void inspect_speeds(const Scene& scene, const InitialState& s, Preflight& p) {
                                          "is not given); lower simulation.dt", i, speed, limit));
 }
 
+constexpr double full_inlet = 0.3;  // solid fraction that random insertion still reaches with ease
+
+/// Takes a removal whatever appears in a region?
+bool takes_all(const Removal& removal, const Box& inlet) {
+    for (int corner = 0; corner < 8; ++corner) {
+        const Vec3d x{(corner & 1 ? inlet.upper : inlet.lower).x, (corner & 2 ? inlet.upper : inlet.lower).y, (corner & 4 ? inlet.upper : inlet.lower).z};
+        if (removal.region == RemovalRegion::half_space && !(dot(removal.normal, x - removal.point) > 0)) return false;
+        for (int a = 0; a < 3 && removal.region == RemovalRegion::box; ++a)
+            if (x[a] < removal.box.lower[a] || x[a] > removal.box.upper[a]) return false;
+    }
+    return removal.region != RemovalRegion::outside;
+}
+
+void inspect_stream(const Scene& scene, const ParticleStream& stream, const Feeder& feeder, const StreamForecast& f, double end, Preflight& p) {
+    const std::string key = "streams." + stream.name;
+    const double interval = static_cast<double>(f.interval_steps) * scene.dt, span = std::min(stream.stop, end) - stream.start;
+    if (!(span > 0)) return note(p, fmt::format("{}.start = {} s is not before the end of the run at {:.6g} s; nothing comes", key, stream.start, end));
+    if (f.fraction > full_inlet)
+        warn(p, fmt::format("{}: {:.2f} of the inlet's volume would be solid and random places fill about {}; some particles will wait. Enlarge the inlet, raise the velocity or lower the rate",
+                            key, f.fraction, full_inlet));
+    if (interval > 0.25 * span)
+        warn(p, fmt::format("{} inserts every {:.4g} s, {:.3g} times while it runs; give {}.interval for a steadier stream", key, interval, std::floor(span / interval), key));
+    const double limit = scene.limits.speed > 0 ? scene.limits.speed : smallest_radius(stream.size) / scene.dt;
+    if (const double speed = length(stream.velocity) + length(stream.velocity_spread); speed > limit)
+        refuse(p, fmt::format("{}.velocity: particles come at up to {:.4g} m/s, past the limit of {:.4g} m/s (limits.speed; the smallest radius a step where it is not given); lower simulation.dt",
+                              key, speed, limit));
+    for (const Removal& removal : scene.removals)
+        if (takes_all(removal, feeder.inlet().at(0)->bounds))
+            refuse(p, fmt::format("removals.{} takes out everything that {} inserts; move one of them", removal.name, key));
+}
+
+void inspect_streams(const Scene& scene, const RunRange& range, Preflight& p) {
+    for (const ParticleStream& stream : scene.streams) {
+        const Feeder feeder(scene, stream, 0);
+        p.streams.push_back(feeder.forecast(range.last(scene)));
+        p.most_particles += std::floor(p.streams.back().particles);
+        inspect_stream(scene, stream, feeder, p.streams.back(), static_cast<double>(range.last(scene)) * scene.dt, p);
+    }
+    if (p.most_particles > 4294967295.0)
+        refuse(p, fmt::format("{:.4g} particles come until the end; at most 4294967295 can be numbered; lower a rate or give a total", p.most_particles));
+}
+
 void inspect_memory(Preflight& p) {
     const double there = machine_memory_bytes();
     if (there > 0 && p.needs.peak_bytes > there)
@@ -152,11 +194,13 @@ std::uint64_t RunRange::last(const Scene& scene) const { return asked ? first + 
 
 Preflight inspect(const Scene& scene, const InitialState& s, const RunRange& range) {
     Preflight p;
-    p.needs = forecast(scene, static_cast<double>(s.size()), range.last(scene) - range.first);
+    p.most_particles = static_cast<double>(s.size());
+    inspect_streams(scene, range, p);
+    p.needs = forecast(scene, p.most_particles, range.last(scene) - range.first);
     if (!range.asked) inspect_duration(scene, p);
     inspect_intervals(scene, p);
     inspect_meshes(scene, s, p);
-    if (s.size() == 0) {
+    if (s.size() == 0 && scene.streams.empty()) {
         warn(p, "the scene has no particles: nothing will move");
         return p;
     }

@@ -8,6 +8,7 @@
 
 #include "forecast.hpp"
 #include "grainray/simulation.hpp"
+#include "insertion/feeder.hpp"
 #include "overlaps.hpp"
 
 namespace grainray::cli {
@@ -25,6 +26,8 @@ StepVerdict verdict(const CriticalStep&, double dt);
 struct Preflight {
     std::vector<CriticalStep> steps;
     Overlaps overlaps;
+    std::vector<StreamForecast> streams;  ///< of the scene's, until the last step
+    double most_particles = 0;            ///< at the end, if none is taken out
     Forecast needs;
     std::vector<Finding> findings;
     const Finding* first_refusal() const;

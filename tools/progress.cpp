@@ -4,10 +4,12 @@
 
 #include <cstdio>
 #include <string>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include "arguments.hpp"
+#include "report.hpp"
 
 namespace grainray::cli {
 namespace {
@@ -21,6 +23,16 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
 }
 
 }  // namespace
+
+std::string exchange_text(const Simulation& simulation) {
+    if (simulation.streams().empty() && simulation.removals().empty()) return "";
+    const Exchanged e = exchanged_by(simulation);
+    std::string text = fmt::format(", {}", counted(simulation.size(), "particle"));
+    const char* joint = ": ";
+    for (const auto& [count, what] : {std::pair{e.inserted, "inserted"}, {e.waiting, "waiting"}, {e.removed, "removed"}, {e.lost, "lost"}})
+        if (count) text += fmt::format("{}{} {}", std::exchange(joint, ", "), count, what);
+    return text;
+}
 
 Progress::Progress(bool quiet, std::uint64_t first_step, std::uint64_t last_step)
     : shown_(!quiet && isatty(STDERR_FILENO)), first_(first_step), last_(last_step), step_before_(first_step), time_before_(clock::now()) {}
@@ -43,8 +55,8 @@ void Progress::update(const Simulation& simulation) {
     steps_per_second_ = steps_per_second_ > 0 ? (1 - smoothing) * steps_per_second_ + smoothing * now : now;
     step_before_ = step;
     const double percent = 100.0 * static_cast<double>(step - first_) / static_cast<double>(last_ - first_);
-    fmt::print(stderr, "\r{:5.1f} %  step {}/{}  t = {:.4g} s  {} particle-steps/s  rebuild every {:.3g} steps  {} left\x1b[K", percent, step,
-               last_, simulation.time(), short_number(steps_per_second_ * static_cast<double>(simulation.size())), rebuild_interval(simulation),
+    fmt::print(stderr, "\r{:5.1f} %  step {}/{}  t = {:.4g} s  {} particle-steps/s{}  rebuild every {:.3g} steps  {} left\x1b[K", percent, step,
+               last_, simulation.time(), short_number(steps_per_second_ * static_cast<double>(simulation.size())), exchange_text(simulation), rebuild_interval(simulation),
                duration_text(static_cast<double>(last_ - step) / steps_per_second_));
     std::fflush(stderr);
     drawn_ = true;

@@ -3,10 +3,14 @@
 
 #include <chrono>
 #include <cstdint>
+#include <string>
 
 #include "grainray/simulation.hpp"
 
 namespace grainray::cli {
+
+/// ", 1200 particles: 500 inserted, 20 waiting, 300 removed"; nothing where no particle comes or goes.
+std::string exchange_text(const Simulation&);
 
 class Progress {
 public:

@@ -76,7 +76,7 @@ bool make_absolute(Value* table, const char* key, const Scene& scene) {
 /// Makes the paths of all files that the scene reads absolute; true where one changed.
 bool make_paths_absolute(Value& document, const Scene& scene) {
     bool changed = false;
-    for (const char* parent : {"particles", "planes", "meshes"}) {
+    for (const char* parent : {"particles", "planes", "meshes", "streams"}) {
         Value* tables = find(document, parent);
         for (const Entry& e : tables && tables->table() ? *tables->table() : scene::Table{}) {
             Value* table = find(*tables, e.key);

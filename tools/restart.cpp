@@ -47,6 +47,41 @@ private:
         for (const ParticleGroup& g : s.particles) names += g.name + ' ';
         add("particles (names and their order)", names);
         for (const ParticleGroup& g : s.particles) add_group("particles." + g.name + '.', g);
+        for (const ParticleStream& stream : s.streams) add_stream("streams." + stream.name + '.', stream);
+    }
+
+    /// A stream that has begun keeps its numbers; when and after how much it ends may change.
+    void add_stream(const std::string& table, const ParticleStream& s) {
+        add(table + "material", s.material);
+        add(table + "rate", fmt::format("{} {}", s.rate.particles, s.rate.mass));
+        add(table + "start", s.start);
+        add_size(table, s.size);
+    }
+
+    void add_flow(const std::string& table, const ParticleStream& s) {
+        add(table + "total", fmt::format("{} {}", s.total.particles, s.total.mass));
+        add(table + "stop", s.stop);
+        add(table + "interval", s.interval);
+        add(table + "attempts", fmt::format("{}", s.attempts));
+        add(table + "velocity", s.velocity);
+        add(table + "velocity_spread", s.velocity_spread);
+        add(table + "angular_velocity", s.angular_velocity);
+        add(table + "type", fmt::format("{}", s.inlet.index()));
+        if (const auto* box = std::get_if<Box>(&s.inlet)) return add_box(table.substr(0, table.size() - 1), *box);
+        const auto& inlet = std::get<InletSurface>(s.inlet);
+        add(table + "mesh", inlet.mesh);
+        add(table + "depth", inlet.depth);
+        add(table + "scale", inlet.surface.scale);
+        add(table + "rotation", inlet.surface.rotation);
+        add(table + "translation", inlet.surface.translation);
+        add_box(table.substr(0, table.size() - 1), inlet.facets);
+    }
+
+    void add_removal(const std::string& table, const Removal& r) {
+        add(table + "type", fmt::format("{}", static_cast<int>(r.region)));
+        if (r.region == RemovalRegion::box) add_box(table.substr(0, table.size() - 1), r.box);
+        if (r.region == RemovalRegion::half_space) add(table + "point", r.point), add(table + "normal", r.normal);
+        add(table + "steps", fmt::format("{}", r.steps));
     }
 
     void add_box(const std::string& table, const std::optional<Box>& box) {
@@ -116,6 +151,8 @@ private:
         }
         for (const Plane& plane : s.planes) add_plane("planes." + plane.name + '.', plane);
         for (const Mesh& mesh : s.meshes) add_mesh("meshes." + mesh.name + '.', mesh);
+        for (const ParticleStream& stream : s.streams) add_flow("streams." + stream.name + '.', stream);
+        for (const Removal& removal : s.removals) add_removal("removals." + removal.name + '.', removal);
         if (!s.terrain) return;
         add("terrain.material", s.terrain->material);
         add("terrain.smooth", fmt::format("{}", s.terrain->smooth));
@@ -158,18 +195,20 @@ private:
     std::map<std::string, std::string> all_;
 };
 
-/// A density of a material that only one of the two scenes has does nothing.
-bool matters(const std::string& key, bool in_both) { return in_both || !key.starts_with("materials.") || !key.ends_with(".density"); }
+/// A density of a material that only one of the two scenes has does nothing; a stream may begin or be left out.
+bool matters(const std::string& key, bool in_both, bool kept) {
+    return in_both || !((key.starts_with("materials.") && key.ends_with(".density")) || (kept && key.starts_with("streams.")));
+}
 
 std::vector<std::string> differing_keys(const Scene& then, const Scene& now, bool kept) {
     const auto a = Facts(then, kept).all(), b = Facts(now, kept).all();
     std::vector<std::string> keys;
     for (const auto& [key, value] : a) {
         const auto other = b.find(key);
-        if ((other == b.end() || other->second != value) && matters(key, other != b.end())) keys.push_back(key);
+        if ((other == b.end() || other->second != value) && matters(key, other != b.end(), kept)) keys.push_back(key);
     }
     for (const auto& [key, value] : b)
-        if (!a.contains(key) && matters(key, false)) keys.push_back(key);
+        if (!a.contains(key) && matters(key, false, kept)) keys.push_back(key);
     return keys;
 }
 
@@ -207,9 +246,8 @@ std::string key_list(std::vector<std::string> keys) {
 
 void require_fit(const Scene& scene, const InitialState& particles, const Checkpoint& c, const fs::path& file) {
     const auto reject = [&](const std::string& why) { throw InputError(fmt::format("--restart {}: {}", file.string(), why)); };
-    const bool may_lose = scene.terrain && scene.terrain->edge == TerrainEdge::open && c.id.size() < particles.size();
-    if (c.id.size() != particles.size() && !may_lose)
-        reject(fmt::format("it holds {} particles and the scene {}; give the scene it was made with (scene.toml beside it)", c.id.size(), particles.size()));
+    if (c.placed != particles.size())
+        reject(fmt::format("its run began with {} particles and the scene has {}; give the scene it was made with (scene.toml beside it)", c.placed, particles.size()));
     if (c.dt != scene.dt)
         reject(fmt::format("its time step is {} s and the scene's {} s; restart with the same one: --set simulation.dt={}", c.dt, scene.dt, c.dt));
     for (const std::uint32_t m : c.material)

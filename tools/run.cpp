@@ -122,10 +122,10 @@ private:
 
     int report_done(const Simulation& simulation) const {
         const std::uint64_t steps = simulation.step_count() - facts_.first_step;
-        const double rate = facts_.wall_seconds > 0 ? static_cast<double>(steps) / facts_.wall_seconds : 0;
+        const double rate = facts_.wall_seconds > 0 ? static_cast<double>(simulation.particle_steps()) / facts_.wall_seconds : 0;
         if (!options_.quiet)
-            fmt::print(stderr, "done: {} in {}, {} particle-steps/s; state {}; results in {}\n", counted(steps, "step"), duration_text(facts_.wall_seconds),
-                       short_number(rate * static_cast<double>(simulation.size())), hash_text(simulation.state_hash()), folder_.path().string());
+            fmt::print(stderr, "done: {} in {}, {} particle-steps/s{}; state {}; results in {}\n", counted(steps, "step"), duration_text(facts_.wall_seconds),
+                       short_number(rate), exchange_text(simulation), hash_text(simulation.state_hash()), folder_.path().string());
         return done;
     }
 

@@ -105,7 +105,7 @@ bool RunFolder::is_of_a_run() const {
 
 fs::path RunFolder::first_to_replace() const {
     std::error_code ignored;
-    for (const fs::path& file : {scene(), history(), lost(), checkpoint(), summary()})
+    for (const fs::path& file : {scene(), history(), lost(), removed(), checkpoint(), summary()})
         for (const fs::path& name : {file, fs::path(file.string() + ".tmp")})
             if (fs::exists(fs::symlink_status(name, ignored))) return name;
     for (const fs::directory_entry& entry : fs::directory_iterator(folder_ / "frames", ignored))
@@ -126,7 +126,7 @@ void RunFolder::check_still_empty() const {
 
 void RunFolder::clear() const {
     std::error_code ignored;
-    for (const fs::path& file : {scene(), history(), lost(), checkpoint(), summary()}) {
+    for (const fs::path& file : {scene(), history(), lost(), removed(), checkpoint(), summary()}) {
         fs::remove(file, ignored);
         fs::remove(file.string() + ".tmp", ignored);
     }

@@ -16,6 +16,7 @@ public:
     std::filesystem::path scene() const { return folder_ / "scene.toml"; }
     std::filesystem::path history() const { return folder_ / "history.csv"; }
     std::filesystem::path lost() const { return folder_ / "lost.csv"; }
+    std::filesystem::path removed() const { return folder_ / "removed.csv"; }
     std::filesystem::path checkpoint() const { return folder_ / "checkpoint.h5"; }
     std::filesystem::path summary() const { return folder_ / "summary.json"; }
     std::filesystem::path frame(std::uint64_t index) const;

@@ -8,6 +8,8 @@
 
 #include <fmt/format.h>
 
+#include "report.hpp"
+
 namespace grainray::cli {
 namespace {
 
@@ -37,30 +39,46 @@ std::uint64_t whole_steps(double interval, double dt) {
     return std::max<std::uint64_t>(1, static_cast<std::uint64_t>(std::llround(steps)));
 }
 
-const std::vector<std::string> lost_columns{"time", "step", "id", "x", "y", "z", "velocity_x", "velocity_y", "velocity_z"};
+const std::vector<std::string> lost_columns{"time", "step", "id", "x", "y", "z", "velocity_x", "velocity_y", "velocity_z", "radius"};
 
-/// Force and torque on each mesh and the terrain come last.
+std::vector<std::string> removed_columns() {
+    auto columns = lost_columns;
+    columns.push_back("removal");
+    return columns;
+}
+
+/// Names stand in rows of commas.
+std::string column_name(std::string name) {
+    std::replace(name.begin(), name.end(), ',', '_');
+    return name;
+}
+
+/// Force and torque on each mesh and the terrain come last, before them what streams and removals have done.
 std::vector<std::string> history_columns(const Scene& scene) {
     std::vector<std::string> columns{
     "time",       "kinetic_translation", "kinetic_rotation",  "potential",    "momentum_x", "momentum_y",
     "momentum_z", "max_overlap_ratio",   "coordination",      "mean_neighbors", "front_99", "max_speed",
     "angular_momentum_x", "angular_momentum_y", "angular_momentum_z", "contacts", "particles", "step"};
+    if (!scene.streams.empty()) columns.insert(columns.end(), {"inserted", "waiting"});
+    if (!scene.removals.empty()) columns.push_back("removed");
     std::vector<std::string> surfaces;
     for (const Mesh& mesh : scene.meshes) surfaces.push_back(mesh.name);
     if (scene.terrain) surfaces.push_back("terrain");
-    for (std::string name : surfaces) {
-        std::replace(name.begin(), name.end(), ',', '_');
+    for (const std::string& name : surfaces)
         for (const char* what : {"force", "torque"})
-            for (const char axis : {'x', 'y', 'z'}) columns.push_back(fmt::format("{}_{}_{}", name, what, axis));
-    }
+            for (const char axis : {'x', 'y', 'z'}) columns.push_back(fmt::format("{}_{}_{}", column_name(name), what, axis));
     return columns;
 }
 
-std::vector<double> history_row(const Statistics& s, std::size_t particles) {
+std::vector<double> history_row(const Simulation& simulation, const Scene& scene) {
+    const Statistics s = simulation.statistics();
+    const Exchanged exchanged = exchanged_by(simulation);
     std::vector<double> row{s.time,       s.kinetic_translation, s.kinetic_rotation, s.potential,      s.momentum.x, s.momentum.y,
             s.momentum.z, s.max_overlap_ratio,   s.coordination,     s.mean_neighbors, s.front_99,   s.max_speed,
             s.angular_momentum.x, s.angular_momentum.y, s.angular_momentum.z, static_cast<double>(s.contacts),
-            static_cast<double>(particles), static_cast<double>(s.step)};
+            static_cast<double>(simulation.size()), static_cast<double>(s.step)};
+    if (!scene.streams.empty()) row.insert(row.end(), {static_cast<double>(exchanged.inserted), static_cast<double>(exchanged.waiting)});
+    if (!scene.removals.empty()) row.push_back(static_cast<double>(exchanged.removed));
     for (const SurfaceLoad& load : s.surfaces)
         for (const Vec3d& v : {load.force, load.torque}) row.insert(row.end(), {v.x, v.y, v.z});
     return row;
@@ -88,6 +106,7 @@ RunLoop::RunLoop(Simulation& simulation, const Scene& scene, const RunFolder& fo
       history_(folder.history(), history_columns(scene), plan.appends, simulation.time()),
       asked_checkpoint_(plan.has_checkpoint ? plan.first : no_step), written_checkpoint_(asked_checkpoint_) {
     if (scene.terrain && scene.terrain->edge == TerrainEdge::open) lost_.emplace(folder.lost(), lost_columns, plan.appends, simulation.time());
+    if (!scene.removals.empty()) removed_.emplace(folder.removed(), removed_columns(), plan.appends, simulation.time());
 }
 
 bool RunLoop::run() {
@@ -119,10 +138,13 @@ bool RunLoop::run_to_end() {
 
 /// At once, so that the list is whole whenever a checkpoint is written.
 void RunLoop::write_lost() {
-    for (const auto& all = simulation_.lost(); lost_ && lost_written_ < all.size(); ++lost_written_) {
-        const LostParticle& p = all[lost_written_];
-        lost_->row({p.time, static_cast<double>(p.step), static_cast<double>(p.id), p.position.x, p.position.y, p.position.z, p.velocity.x, p.velocity.y, p.velocity.z});
+    for (const LostParticle& p : simulation_.lost()) {
+        const std::vector<double> row{p.time, static_cast<double>(p.step), static_cast<double>(p.id), p.position.x, p.position.y, p.position.z,
+                                      p.velocity.x, p.velocity.y, p.velocity.z, p.radius};
+        if (p.removal == LostParticle::left_terrain) lost_->row(row);
+        else removed_->row(row, column_name(scene_.removals[p.removal].name));
     }
+    simulation_.forget_lost();
 }
 
 std::uint64_t RunLoop::next_stop() const {
@@ -166,7 +188,7 @@ std::shared_ptr<const RunLoop::Output> RunLoop::take(unsigned parts) const {
     auto output = std::make_shared<Output>();
     output->step = simulation_.step_count();
     if (parts & frame) output->frame = simulation_.frame();
-    if (parts & history) output->row = history_row(simulation_.statistics(), simulation_.size());
+    if (parts & history) output->row = history_row(simulation_, scene_);
     if (parts & checkpoint) output->checkpoint = simulation_.checkpoint();
     return output;
 }

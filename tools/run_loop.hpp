@@ -57,8 +57,7 @@ private:
     StopSignals signals_;
     Progress progress_;
     HistoryFile history_;
-    std::optional<HistoryFile> lost_;  ///< of an open terrain; of the stepping thread alone
-    std::size_t lost_written_ = 0;
+    std::optional<HistoryFile> lost_, removed_;  ///< of an open terrain, of removals; of the stepping thread alone
     double seconds_per_step_ = 0;
     std::uint64_t asked_checkpoint_, written_checkpoint_;  ///< steps; the second belongs to the writing thread
     OutputQueue queue_;  // last: its jobs use the others

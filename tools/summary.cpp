@@ -10,7 +10,7 @@ namespace grainray::cli {
 std::string hash_text(std::uint64_t hash) { return fmt::format("0x{:016x}", hash); }
 
 nlohmann::ordered_json profile_json(const Profile& p) {
-    return {{"neighbors", p.neighbors}, {"contacts", p.contacts}, {"boundary", p.boundary}, {"dynamics", p.dynamics}, {"fused", p.fused}, {"output", p.output}};
+    return {{"neighbors", p.neighbors}, {"contacts", p.contacts}, {"boundary", p.boundary}, {"dynamics", p.dynamics}, {"fused", p.fused}, {"insertion", p.insertion}, {"output", p.output}};
 }
 
 nlohmann::ordered_json search_json(const SearchReport& s) {
@@ -22,12 +22,39 @@ nlohmann::ordered_json search_json(const SearchReport& s) {
             {"mean_margin_ratio", s.mean_margin_ratio}};
 }
 
-void add_speed(nlohmann::ordered_json& json, std::size_t particles, std::uint64_t steps, double wall_seconds) {
-    const double rate = wall_seconds > 0 ? static_cast<double>(steps) / wall_seconds : 0;
+void add_speed(nlohmann::ordered_json& json, std::uint64_t particle_steps, std::uint64_t steps, double wall_seconds) {
+    const auto rate = [=](std::uint64_t count) { return wall_seconds > 0 ? static_cast<double>(count) / wall_seconds : 0; };
     json["wall_seconds"] = wall_seconds;
-    json["steps_per_second"] = rate;
-    json["particle_steps_per_second"] = rate * static_cast<double>(particles);
+    json["steps_per_second"] = rate(steps);
+    json["particle_steps_per_second"] = rate(particle_steps);
 }
+
+Exchanged exchanged_by(const Simulation& simulation) {
+    Exchanged sum;
+    for (const StreamReport& s : simulation.streams()) sum.inserted += s.inserted, sum.waiting += s.waiting;
+    for (const RemovalReport& r : simulation.removals()) (r.of_terrain ? sum.lost : sum.removed) += r.particles;
+    return sum;
+}
+
+namespace {
+
+/// Totals, then each stream and removal.
+void add_exchanges(nlohmann::ordered_json& json, const Simulation& simulation, const Scene& scene) {
+    const Exchanged all = exchanged_by(simulation);
+    if (scene.terrain) json["particles_lost"] = all.lost;
+    if (!scene.streams.empty()) {
+        json["particles_inserted"] = all.inserted;
+        json["particles_waiting"] = all.waiting;
+        for (const StreamReport& s : simulation.streams())
+            json["streams"][s.name] = {{"inserted", s.inserted}, {"mass", s.mass}, {"waiting", s.waiting}, {"waiting_mass", s.waiting_mass}};
+    }
+    if (scene.removals.empty()) return;
+    json["particles_removed"] = all.removed;
+    for (const RemovalReport& r : simulation.removals())
+        if (!r.of_terrain) json["removals"][r.name] = {{"removed", r.particles}, {"mass", r.mass}};
+}
+
+}  // namespace
 
 std::string summary_text(const Simulation& simulation, const Scene& scene, const RunFacts& facts) {
     const Statistics now = simulation.statistics();
@@ -42,12 +69,12 @@ std::string summary_text(const Simulation& simulation, const Scene& scene, const
     json["threads"] = facts.threads;
     json["method"] = scene.method;
     json["particles"] = simulation.size();
-    if (scene.terrain) json["particles_lost"] = simulation.lost().size();
+    add_exchanges(json, simulation, scene);
     json["dt"] = scene.dt;
     json["steps"] = steps;
     json["step"] = simulation.step_count();
     json["time"] = simulation.time();
-    add_speed(json, simulation.size(), steps, facts.wall_seconds);
+    add_speed(json, simulation.particle_steps(), steps, facts.wall_seconds);
     json["search"] = search_json(simulation.search());
     json["profile"] = profile_json(simulation.profile());
     json["memory_bytes"] = simulation.memory_bytes();

@@ -117,6 +117,13 @@ public:
         resize_discard(other.size_);
         if (size_) detail::copy(device_, data_, other.device_, other.data_, size_ * sizeof(T));
     }
+    /// Adds at the end; what is stored stays.
+    void append(const std::vector<T>& host) {
+        Array longer(device_, size_ + host.size());
+        if (size_) detail::copy(device_, longer.data_, device_, data_, size_ * sizeof(T));
+        if (!host.empty()) detail::copy(device_, longer.data_ + size_, Device::cpu, host.data(), host.size() * sizeof(T));
+        swap(longer);
+    }
     std::vector<T> to_host() const {
         std::vector<T> host(size_);
         if (size_) detail::copy(Device::cpu, host.data(), device_, data_, size_ * sizeof(T));

@@ -49,7 +49,9 @@ struct Checkpoint {
     double time = 0, dt = 0;
     double unit = 0;                          ///< metres per fixed-point position unit
     Vec3d origin;                             ///< world position of fixed-point zero, m
-    double largest_radius = 0;                ///< of all particles there ever were, m
+    double largest_radius = 0;                ///< of all particles there ever were or may come, m
+    std::uint64_t placed = 0;                 ///< particles at the start of the run: their ids come first
+    std::uint64_t next_id = 0;                ///< of the next particle to come
     std::uint64_t state_hash = 0;
     std::vector<std::uint32_t> id, material;
     std::vector<Vec3l> position;              ///< fixed point
@@ -63,6 +65,13 @@ struct Checkpoint {
     std::vector<std::uint32_t> facet_particle, facet; ///< particle ids, ascending, and facets they touch (boundary/facets.hpp)
     std::vector<float> facet_side;
     std::vector<Vec3f> facet_history;
+    /// A stream: its name as a number, the step at which it began, particles due, looked at, places tried, inserted (insertion/feeder.hpp).
+    std::vector<std::uint64_t> stream_key, stream_since, stream_drawn, stream_tried, stream_attempts, stream_inserted;
+    std::vector<double> stream_drawn_mass, stream_inserted_mass;        ///< kg
+    std::vector<std::uint32_t> waiting_stream;                          ///< place of a stream above, ascending
+    std::vector<std::uint64_t> waiting_number;                          ///< particles of it that wait for a place
+    std::vector<std::uint64_t> removal_key, removal_particles;          ///< name as a number; taken out so far
+    std::vector<double> removal_mass;                                   ///< kg
     std::string scene;                        ///< text of the scene it belongs to
 };
 
@@ -80,7 +89,8 @@ public:
     /// Starts a new file, or (append) keeps the rows whose first column, the time, is <= keep_until.
     HistoryFile(std::filesystem::path, const std::vector<std::string>& columns, bool append, double keep_until);
     ~HistoryFile();
-    void row(const std::vector<double>& values);
+    /// name: of the last column, where that is a text.
+    void row(const std::vector<double>& values, const std::string& name = "");
 
 private:
     struct Impl;

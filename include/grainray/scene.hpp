@@ -59,6 +59,10 @@ struct SizeDistribution {
     std::vector<double> radii, weights;      ///< table: radii and their share by number
 };
 
+/// Bounds of the radii that can occur, m.
+double smallest_radius(const SizeDistribution&);
+double largest_radius(const SizeDistribution&);
+
 struct Lattice {
     std::array<std::int64_t, 3> count{1, 1, 1};
     Vec3d spacing;   ///< distance of the lattice points along each axis, m
@@ -154,6 +158,46 @@ struct Terrain {
     std::optional<ElevationGrid> after, before;  ///< given by a program instead of files
 };
 
+/// So many particles, or so much mass; neither: not given.
+struct Amount {
+    double particles = 0;
+    double mass = 0;  ///< kg
+    bool given() const { return particles > 0 || mass > 0; }
+};
+
+/// A surface in front of which a stream's particles appear, on the side to which they go.
+struct InletSurface {
+    std::string mesh;            ///< name of a mesh of the scene, with which it moves; empty: `surface` is read
+    Mesh surface;                ///< no boundary: its material and motion have no meaning
+    std::optional<Box> facets;   ///< those alone that lie wholly in it
+    double depth = 0;            ///< of the layer, along the way of the particles, m
+};
+
+/// Particles that appear during the run.
+struct ParticleStream {
+    std::string name;
+    std::string material;
+    std::variant<Box, InletSurface> inlet;
+    Amount rate;             ///< a second
+    Amount total;            ///< after which it ends; not given: no end
+    double start = 0, stop = std::numeric_limits<double>::infinity();  ///< s
+    double interval = 0;     ///< s between two insertions; 0: while a particle crosses the inlet
+    std::int64_t attempts = 100;  ///< places tried for a particle at an insertion
+    SizeDistribution size;
+    Vec3d velocity, velocity_spread, angular_velocity;  ///< each component of the velocity is drawn from velocity +- spread
+};
+
+enum class RemovalRegion { box, half_space, outside };
+
+/// Takes particles out whose centre is in a region.
+struct Removal {
+    std::string name;
+    RemovalRegion region = RemovalRegion::box;
+    Box box{};                    ///< of RemovalRegion::box
+    Vec3d point, normal{0, 0, 1}; ///< of half_space: the side to which the normal points; unit length after loading
+    std::int64_t steps = 100;     ///< between two looks
+};
+
 struct Domain {
     std::optional<Box> box;                   ///< required along periodic axes; elsewhere a limit that must not be left
     std::array<bool, 3> periodic{};
@@ -223,6 +267,8 @@ struct Scene {
     std::vector<Plane> planes;
     std::vector<Mesh> meshes;
     std::optional<Terrain> terrain;
+    std::vector<ParticleStream> streams;
+    std::vector<Removal> removals;
     std::uint64_t steps() const { return static_cast<std::uint64_t>(std::llround(duration / dt)); }
 };
 

@@ -19,6 +19,7 @@ struct Profile {
     double boundary = 0;   ///< forces from planes
     double dynamics = 0;   ///< integration, damping, margin check
     double fused = 0;      ///< on CUDA: contacts, boundary and dynamics, one kernel a step
+    double insertion = 0;  ///< streams and removals, new lists included
     double output = 0;     ///< statistics, frames, checkpoints
 };
 
@@ -57,13 +58,31 @@ struct Statistics {
     std::vector<SurfaceLoad> surfaces;                     ///< meshes in the order of the scene, then the terrain
 };
 
-/// A particle that left an open terrain and was taken out.
+/// A particle that was taken out: by a removal of the scene, or because it left an open terrain.
 struct LostParticle {
+    static constexpr std::uint32_t left_terrain = ~0u;
     std::uint64_t step = 0;  ///< after which it was taken out
     double time = 0;         ///< s
     std::uint32_t id = 0;
     Vec3d position;          ///< m
     Vec3f velocity;          ///< m/s
+    float radius = 0;        ///< m
+    std::uint32_t removal = left_terrain;  ///< number of the removal in the scene
+};
+
+/// What a stream has done since it began, restarts included.
+struct StreamReport {
+    std::string name;
+    std::uint64_t inserted = 0;
+    std::uint64_t waiting = 0;  ///< due, but without a place so far
+    double mass = 0, waiting_mass = 0;  ///< kg
+};
+/// What a removal has taken out since the run began, restarts included. With an open terrain the last one is what left it.
+struct RemovalReport {
+    std::string name;
+    bool of_terrain = false;
+    std::uint64_t particles = 0;
+    double mass = 0;  ///< kg
 };
 
 struct SimulationOptions {
@@ -87,12 +106,17 @@ public:
 
     std::size_t size() const;
     std::uint64_t step_count() const;
+    /// Steps of every particle added up, since this object was made.
+    std::uint64_t particle_steps() const;
     double time() const;
     double dt() const;
     Device device() const;
 
-    /// Particles taken out since this object was made, in the order in which they went.
+    /// Particles taken out since this object was made or forget_lost() was called, in the order in which they went.
     const std::vector<LostParticle>& lost() const;
+    void forget_lost();
+    std::vector<StreamReport> streams() const;
+    std::vector<RemovalReport> removals() const;
 
     Statistics statistics() const;
     Frame frame() const;
@@ -112,7 +136,6 @@ public:
 private:
     struct Impl;
     std::unique_ptr<Impl> impl_;
-    void take_out_lost();
 };
 
 /// Result of `grainray check`.

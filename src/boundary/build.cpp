@@ -104,13 +104,13 @@ bool facets_move(const Scene& scene) {
     return false;
 }
 
-std::optional<LostRegion> lost_region(const Scene& scene, const Facets& f) {
+std::optional<Box> open_terrain(const Scene& scene, const Facets& f) {
     if (!scene.terrain || scene.terrain->edge != TerrainEdge::open) return {};
     const std::vector<Surface> surfaces = f.surfaces.to_host();
     const Surface& s = surfaces.back();
     double lowest = std::numeric_limits<double>::infinity();
     for (const double h : f.heights.to_host()) lowest = h < lowest ? h : lowest;
-    return LostRegion{{s.lower.x, s.lower.y, lowest}, {s.lower.x + s.nx * s.width.x, s.lower.y + s.ny * s.width.y, 0}};
+    return Box{{s.lower.x, s.lower.y, lowest}, {s.lower.x + s.nx * s.width.x, s.lower.y + s.ny * s.width.y, 0}};
 }
 
 }  // namespace grainray

@@ -14,7 +14,7 @@ void build_facets(const Scene&, const PositionScale&, Facets&);
 /// Fills Facets::now with the places at step, step + 1, ... step + count - 1.
 void place_facets(const Scene&, const PositionScale&, std::uint64_t step, std::uint32_t count, Facets&);
 bool facets_move(const Scene&);
-/// Outside of which a particle has left an open terrain.
-std::optional<LostRegion> lost_region(const Scene&, const Facets&);
+/// The sides of an open terrain, and below its lowest point: a particle wholly beyond has left it. upper.z has no meaning.
+std::optional<Box> open_terrain(const Scene&, const Facets&);
 
 }  // namespace grainray

@@ -129,13 +129,4 @@ std::uint64_t hash_facets(const State& s) {
     }, Add{});
 }
 
-std::size_t count_lost(const State& s, const LostRegion& region) {
-    const auto near = s.particles.near.view();
-    const auto far = s.particles.far.view();
-    const double fine = s.particles.scale.fine(), unit = s.particles.scale.unit;
-    return reduce(s.size(), std::uint64_t{0}, [=] GR_HD(std::size_t i) -> std::uint64_t {
-        return region.lost(convert<double>(join(near[i], far[i])) * fine, near[i].radius * unit);
-    }, Add{});
-}
-
 }  // namespace grainray::GRAINRAY_EXEC

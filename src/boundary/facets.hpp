@@ -77,15 +77,6 @@ struct Facets {
     }
 };
 
-/// A particle is lost once its whole sphere is outside: beyond the sides or below the bottom. Relative to the world's origin.
-struct LostRegion {
-    Vec3d lower, upper;  ///< upper.z has no meaning
-
-    GR_HD bool lost(const Vec3d& x, double radius) const {
-        return x.x + radius < lower.x || x.x - radius > upper.x || x.y + radius < lower.y || x.y - radius > upper.y || x.z + radius < lower.z;
-    }
-};
-
 /// The shapes of all surfaces, as kernels and observers read them.
 struct FacetShapes {
     View<const Surface> surfaces;

@@ -79,6 +79,13 @@ std::vector<CriticalStep> critical_steps(const Scene& scene, const InitialState&
         sizes[m].lightest = std::min(sizes[m].lightest, mass);
         sizes[m].heaviest = std::max(sizes[m].heaviest, mass);
     }
+    for (const ParticleStream& stream : scene.streams)
+        for (std::size_t m = 0; m < scene.materials.size(); ++m) {
+            if (scene.materials[m].name != stream.material) continue;
+            const auto mass = [&](double r) { return 4.0 / 3.0 * pi * r * r * r * scene.materials[m].density; };
+            sizes[m].lightest = std::min(sizes[m].lightest, mass(smallest_radius(stream.size)));
+            sizes[m].heaviest = std::max(sizes[m].heaviest, mass(largest_radius(stream.size)));
+        }
     Finder finder{scene, {}};
     for (const auto& [a, sa] : sizes) {
         for (const auto& [b, sb] : sizes) {

@@ -1,5 +1,5 @@
 // Stage: storage order. Neighbours in space become neighbours in memory.
-#include "exec/exec.hpp"
+#include "exec/permute.hpp"
 #include "neighbors/morton.hpp"
 #include "stages.hpp"
 
@@ -52,18 +52,9 @@ void wrap_periodic(State& s) {
     });
 }
 
-template <class T>
-void permute(Array<T>& values, const Array<std::uint32_t>& old_index) {
-    Array<T> sorted(device, values.size());
-    const auto from = values.view(), to = sorted.view();
-    const auto was = old_index.view();
-    for_each(values.size(), [=] GR_HD(std::size_t i) { to[i] = from[was[i]]; });
-    values.swap(sorted);
-}
-
 }  // namespace
 
-void sort(State& s, const ContactList& old_list, Array<std::uint32_t>& old_index) {
+void sort(State& s, const ContactList& old_list, const Array<std::uint32_t>& rows, Array<std::uint32_t>& old_index) {
     wrap_periodic(s);
     Particles& p = s.particles;
     const std::size_t n = p.size();
@@ -85,11 +76,13 @@ void sort(State& s, const ContactList& old_list, Array<std::uint32_t>& old_index
     const auto order = old_index.view();
     const Vec3l lo = bounds.lo;
     const auto contacts = old_list.offsets.view();
+    const auto row_of = rows.view();
     for_each(n, [=] GR_HD(std::size_t i) {
         const Vec3l q = join(near[i], far[i]);
         const std::uint64_t code = neighbors::morton((q.x >> cell_shift) - lo.x, (q.y >> cell_shift) - lo.y, (q.z >> cell_shift) - lo.z);
         constexpr std::uint64_t most = (1 << contact_bits) - 1;
-        const std::uint64_t count = contacts[i + 1] - contacts[i];
+        const std::size_t row = row_of.size ? row_of[i] : i;
+        const std::uint64_t count = contacts[row + 1] - contacts[row];
         key[i] = code << contact_bits | (count < most ? count : most);
         order[i] = static_cast<std::uint32_t>(i);
     });
@@ -99,6 +92,9 @@ void sort(State& s, const ContactList& old_list, Array<std::uint32_t>& old_index
     permute(p.body, old_index);
     permute(p.remainder, old_index);
     permute(p.id, old_index);
+    if (rows.size() == 0) return;
+    const auto was = old_index.view();
+    for_each(n, [=] GR_HD(std::size_t i) { was[i] = row_of[was[i]]; });
 }
 
 }  // namespace grainray::GRAINRAY_EXEC

@@ -1,7 +1,7 @@
 // Checkpoints: HDF5, a dataset an array, numbers as attributes of the root group, and after what HDF5 reads a seal over
 // the bytes of the file. HDF5 never meets a full disk or a damaged file, which leave the library in an undefined state:
 // it builds the file in memory for AtomicFile to write, and it opens a file only once the seal was found whole.
-#include <optional>
+#include <map>
 #include <utility>
 
 #include <fmt/format.h>
@@ -221,11 +221,10 @@ Checkpoint read_all(const std::filesystem::path& path) {
     std::uint64_t checksum = 0;
     get_number(file, "checksum", checksum);
     for_each_number(c, [&](const char* name, auto& value) { get_number(file, name, value); });
-    std::optional<std::size_t> length[4];  // of each group
+    std::map<int, std::size_t> length;  // of each group
     for_each_array(c, [&](const char* name, auto& array, int group) {
         get_array(file, name, array);
-        if (array.size() != length[group].value_or(array.size())) throw Hdf5Failure{name};
-        length[group] = array.size();
+        if (length.emplace(group, array.size()).first->second != array.size()) throw Hdf5Failure{name};
     });
     get_scene(file, c.scene);
     if (checksum != checksum_of(c)) throw Hdf5Failure{"checksum"};

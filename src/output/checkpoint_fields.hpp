@@ -10,7 +10,7 @@
 namespace grainray {
 
 /// Raise this when the list below changes: older programs then say so instead of guessing.
-constexpr std::uint32_t checkpoint_version = 2;
+constexpr std::uint32_t checkpoint_version = 3;
 constexpr const char* checkpoint_format = "grainray checkpoint";
 
 /// visit(name, value) for every number of a Checkpoint, const or not.
@@ -22,13 +22,15 @@ void for_each_number(C& c, Visit visit) {
     visit("unit", c.unit);
     visit("origin", c.origin);
     visit("largest_radius", c.largest_radius);
+    visit("placed", c.placed);
+    visit("next_id", c.next_id);
     visit("state_hash", c.state_hash);
 }
 
 /// visit(name, array, group) for every array; arrays of one group have one length.
 template <class C, class Visit>
 void for_each_array(C& c, Visit visit) {
-    enum { particles, contacts, walls, facets };
+    enum { particles, contacts, walls, facets, streams, waiting, removals };
     visit("id", c.id, particles);
     visit("material", c.material, particles);
     visit("position", c.position, particles);
@@ -48,6 +50,19 @@ void for_each_array(C& c, Visit visit) {
     visit("facet", c.facet, facets);
     visit("facet_side", c.facet_side, facets);
     visit("facet_history", c.facet_history, facets);
+    visit("stream_key", c.stream_key, streams);
+    visit("stream_since", c.stream_since, streams);
+    visit("stream_drawn", c.stream_drawn, streams);
+    visit("stream_tried", c.stream_tried, streams);
+    visit("stream_attempts", c.stream_attempts, streams);
+    visit("stream_inserted", c.stream_inserted, streams);
+    visit("stream_drawn_mass", c.stream_drawn_mass, streams);
+    visit("stream_inserted_mass", c.stream_inserted_mass, streams);
+    visit("waiting_stream", c.waiting_stream, waiting);
+    visit("waiting_number", c.waiting_number, waiting);
+    visit("removal_key", c.removal_key, removals);
+    visit("removal_particles", c.removal_particles, removals);
+    visit("removal_mass", c.removal_mass, removals);
 }
 
 /// 64-bit checksum: each 8 bytes are mixed in by a bijection, so that a change of one word always shows.

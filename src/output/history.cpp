@@ -67,10 +67,10 @@ HistoryFile::HistoryFile(std::filesystem::path path, const std::vector<std::stri
 
 HistoryFile::~HistoryFile() = default;
 
-void HistoryFile::row(const std::vector<double>& values) {
-    if (values.size() != impl_->columns)
+void HistoryFile::row(const std::vector<double>& values, const std::string& name) {
+    if (values.size() + !name.empty() != impl_->columns)
         throw SimulationError(fmt::format("{}: a row of {} values for {} columns", impl_->path.string(), values.size(), impl_->columns));
-    impl_->append(fmt::format("{}\n", fmt::join(values, ",")));
+    impl_->append(fmt::format("{}{}{}\n", fmt::join(values, ","), name.empty() ? "" : ",", name));
 }
 
 }  // namespace grainray

@@ -103,6 +103,18 @@ void read(const Node& node, const FieldInfo& field, std::vector<double>& out) {
     for (const Node& item : elements(node, 0, TypeText<double>::name(field))) read(item, field, out.emplace_back());
 }
 
+void read(const Node& node, const FieldInfo& field, Amount& out) {
+    const Unit& mass = field.unit.symbol.empty() ? unit::mass : unit::mass_rate;
+    const auto* text = std::get_if<std::string>(&node.value->data);
+    out = {};
+    if (!text || parse_quantity(*text, field.unit).problem.empty()) return read(node, field, out.particles);
+    const Quantity quantity = parse_quantity(*text, mass);
+    if (!quantity.problem.empty())
+        fail(node, fmt::format("expected a number of particles{}, or a mass as text in {}, {}{}", field.unit.symbol.empty() ? "" : " a second", mass.symbol, mass.others, typical(field)));
+    out.mass = quantity.value;
+    check_range(node, field, out.mass);
+}
+
 std::vector<Node> elements(const Node& node, std::size_t count, const std::string& what) {
     const List* list = node.value->list();
     const std::string wanted = count ? fmt::format("expected an array of {} values ({})", count, what)
@@ -145,6 +157,8 @@ std::string TypeText<std::uint64_t>::name(const FieldInfo&) { return "integer"; 
 std::string TypeText<std::uint64_t>::show(const std::uint64_t& value, const FieldInfo&) {
     return fmt::format("{}", value);
 }
+std::string TypeText<Amount>::name(const FieldInfo&) { return "number or mass"; }
+std::string TypeText<Amount>::show(const Amount&, const FieldInfo&) { return "none"; }
 std::string TypeText<bool>::name(const FieldInfo&) { return "true or false"; }
 std::string TypeText<bool>::show(const bool& value, const FieldInfo&) { return value ? "true" : "false"; }
 std::string TypeText<std::string>::name(const FieldInfo& f) { return f.choices.empty() ? "string" : "choice"; }

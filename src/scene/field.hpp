@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "grainray/scene.hpp"
 #include "scene/suggest.hpp"
 #include "scene/units.hpp"
 #include "scene/value.hpp"
@@ -50,6 +51,8 @@ void read(const Node&, const FieldInfo&, bool&);
 void read(const Node&, const FieldInfo&, std::string&);
 void read(const Node&, const FieldInfo&, Vec3d&);
 void read(const Node&, const FieldInfo&, std::vector<double>&);  ///< one number or an array
+/// A number of particles, or a mass where the text has its unit; both a time where the field's unit is 1/s.
+void read(const Node&, const FieldInfo&, Amount&);
 std::size_t read_choice(const Node&, const FieldInfo&);
 /// The elements of an array of `count` (0: any number of) values; throws where it is none.
 std::vector<Node> elements(const Node&, std::size_t count, const std::string& what);
@@ -84,6 +87,7 @@ GRAINRAY_TYPE_TEXT(std::uint64_t);
 GRAINRAY_TYPE_TEXT(bool);
 GRAINRAY_TYPE_TEXT(std::string);
 GRAINRAY_TYPE_TEXT(Vec3d);
+GRAINRAY_TYPE_TEXT(Amount);
 #undef GRAINRAY_TYPE_TEXT
 template <class T>
 struct TypeText<std::optional<T>> {

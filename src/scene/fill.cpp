@@ -80,7 +80,7 @@ Vec3d random_centre(const Box& box, const std::array<bool, 3>& wraps, double rad
 
 void place_fill(const Scene& scene, const ParticleGroup& group, const RandomFill& fill, InitialState& state) {
     const std::string where = place_of(scene, group);
-    const RadiusSampler sampler(scene, group);
+    const RadiusSampler sampler(group.size, scene.seed, group.name, where);
     const Random random(scene.seed, group.name, Stream::fill);
     const std::vector<double> radii = wanted_radii(fill, sampler, where);
     if (radii.empty()) return;

@@ -42,16 +42,7 @@ RandomFill read_fill(const Node& table, const Scene& s) {
     if (!row.count && !row.solid_fraction)
         fail_key(table, "count",
                  "a fill needs one of count and solid_fraction (a typical value is solid_fraction = 0.25)");
-    for (int axis = 0; axis < 3; ++axis) {
-        if (!(row.upper[axis] > row.lower[axis]))
-            fail_key(table, "upper",
-                     fmt::format("must be greater than 'lower' along {} ({} m)", "xyz"[axis], row.lower[axis]));
-        if (const auto& box = s.domain.box;
-            box && (row.lower[axis] < box->lower[axis] || row.upper[axis] > box->upper[axis]))
-            fail_key(table, row.lower[axis] < box->lower[axis] ? "lower" : "upper",
-                     fmt::format("leaves the domain along {} ({} to {} m)", "xyz"[axis], box -> lower[axis],
-                                 box -> upper[axis]));
-    }
+    check_box(table, row.lower, row.upper, s);
     return {{row.lower, row.upper}, row.count.value_or(0), row.solid_fraction.value_or(0)};
 }
 
@@ -82,6 +73,18 @@ void default_cutoffs(SizeRow& row) {
     }
 }
 
+}  // namespace
+
+void check_box(const Node& table, const Vec3d& lower, const Vec3d& upper, const Scene& s) {
+    for (int axis = 0; axis < 3; ++axis) {
+        if (!(upper[axis] > lower[axis]))
+            fail_key(table, "upper", fmt::format("must be greater than 'lower' along {} ({} m)", "xyz"[axis], lower[axis]));
+        if (const auto& box = s.domain.box; box && (lower[axis] < box->lower[axis] || upper[axis] > box->upper[axis]))
+            fail_key(table, lower[axis] < box->lower[axis] ? "lower" : "upper",
+                     fmt::format("leaves the domain along {} ({} to {} m)", "xyz"[axis], box->lower[axis], box->upper[axis]));
+    }
+}
+
 SizeDistribution read_size(const Node& table, SizeRow row) {
     read_fields(table, schema().size_laws[static_cast<std::size_t>(row.law)], row);
     if (row.law == SizeLaw::normal || row.law == SizeLaw::lognormal) {
@@ -105,6 +108,8 @@ SizeDistribution read_size(const Node& table, SizeRow row) {
     return {row.law,   row.radius, row.minimum.value_or(0), row.maximum.value_or(0), row.mean, row.deviation,
             row.radii, row.weights};
 }
+
+namespace {
 
 /// Throws for a key that this type (and size law) has no use for.
 void check_group_keys(const Node& table, const PlacementRow& placement, const SizeRow& size) {

@@ -10,7 +10,7 @@ namespace scene {
 namespace {
 
 void place_lattice(const Scene& scene, const ParticleGroup& group, const Lattice& lattice, InitialState& state) {
-    const RadiusSampler radius(scene, group);
+    const RadiusSampler radius(group.size, scene.seed, group.name, place_of(scene, group));
     const Random random(scene.seed, group.name, Stream::jitter);
     const auto [nx, ny, nz] = lattice.count;
     const auto total = static_cast<std::size_t>(nx * ny * nz);

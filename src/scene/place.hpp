@@ -9,12 +9,13 @@
 
 namespace grainray::scene {
 
-/// Draws radius number n of a group. Throws InputError where the cut-offs leave nothing to draw.
+/// Draws radius number n of a group or stream; the distribution must outlive it. Throws InputError where the cut-offs leave nothing to draw.
 class RadiusSampler {
 public:
-    RadiusSampler(const Scene&, const ParticleGroup&);
+    /// where: begins messages. source: "NAME" of a group, "streams.NAME"; it tells the numbers of each apart.
+    RadiusSampler(const SizeDistribution&, std::uint64_t seed, const std::string& source, std::string where);
     double operator()(std::uint64_t n) const;
-    double largest() const;
+    double largest() const { return largest_radius(size_); }
 
 private:
     double truncated(std::uint64_t n) const;

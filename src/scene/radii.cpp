@@ -6,10 +6,24 @@
 
 #include "scene/place.hpp"
 
-namespace grainray::scene {
+namespace grainray {
 
-RadiusSampler::RadiusSampler(const Scene& scene, const ParticleGroup& group)
-    : size_(group.size), where_(place_of(scene, group)), random_(scene.seed, group.name, Stream::radius) {
+double smallest_radius(const SizeDistribution& size) {
+    if (size.law == SizeLaw::fixed) return size.radius;
+    if (size.law == SizeLaw::table) return size.radii.empty() ? 0 : *std::min_element(size.radii.begin(), size.radii.end());
+    return size.minimum;
+}
+
+double largest_radius(const SizeDistribution& size) {
+    if (size.law == SizeLaw::fixed) return size.radius;
+    if (size.law == SizeLaw::table) return size.radii.empty() ? 0 : *std::max_element(size.radii.begin(), size.radii.end());
+    return size.maximum;
+}
+
+namespace scene {
+
+RadiusSampler::RadiusSampler(const SizeDistribution& size, std::uint64_t seed, const std::string& source, std::string where)
+    : size_(size), where_(std::move(where)), random_(seed, source, Stream::radius) {
     if (size_.law == SizeLaw::lognormal) {  // of the logarithm, from those of the radius
         const double variance = std::log1p(size_.deviation * size_.deviation / (size_.mean * size_.mean));
         log_mean_ = std::log(size_.mean) - variance / 2;
@@ -17,15 +31,7 @@ RadiusSampler::RadiusSampler(const Scene& scene, const ParticleGroup& group)
     }
     double sum = 0;
     for (const double weight : size_.weights) cumulative_.push_back(sum += weight);
-    if (!(largest() > 0)) throw InputError(fmt::format("{}: the radii must be greater than 0 m", where_));
-}
-
-double RadiusSampler::largest() const {
-    switch (size_.law) {
-        case SizeLaw::fixed: return size_.radius;
-        case SizeLaw::table: return size_.radii.empty() ? 0 : *std::max_element(size_.radii.begin(), size_.radii.end());
-        default: return size_.maximum;
-    }
+    if (!(largest_radius(size_) > 0)) throw InputError(fmt::format("{}: the radii must be greater than 0 m", where_));
 }
 
 double RadiusSampler::operator()(std::uint64_t n) const {
@@ -60,4 +66,5 @@ double RadiusSampler::from_table(std::uint64_t n) const {
     return size_.radii[std::min(index, size_.radii.size() - 1)];
 }
 
-}  // namespace grainray::scene
+}  // namespace scene
+}  // namespace grainray

@@ -9,7 +9,7 @@
 
 namespace grainray::scene {
 
-enum class Stream : std::uint64_t { jitter = 1, radius = 2, fill = 3 };
+enum class Stream : std::uint64_t { jitter = 1, radius = 2, fill = 3, inlet = 4, velocity = 5 };
 
 class Random {
 public:

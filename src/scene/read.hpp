@@ -16,6 +16,12 @@ ParticleGroup read_group(const Node&, const std::string& name, const Scene&);
 Plane read_plane(const Node&, const std::string& name, const Scene&);
 Mesh read_mesh(const Node&, const std::string& name, const Scene&);
 Terrain read_terrain(const Node&, const Scene&);
+ParticleStream read_stream(const Node&, const std::string& name, const Scene&);
+Removal read_removal(const Node&, const std::string& name, const Scene&);
+/// The fields of a size law, its name being in the row.
+SizeDistribution read_size(const Node&, SizeRow);
+/// Throws where upper is not greater than lower along each axis, or the box leaves the domain.
+void check_box(const Node&, const Vec3d& lower, const Vec3d& upper, const Scene&);
 /// The table `motion` of a boundary's table.
 Motion read_motion(const Node& boundary, const Scene&);
 

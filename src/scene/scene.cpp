@@ -104,7 +104,8 @@ void read_pairs(const Node& root, Scene& s) {
 /// Everything a scene may hold at the top.
 void check_top(const Node& root) {
     std::vector<std::string_view> known{"simulation", "domain",    "contact", "search",    "output", "limits",
-                                        "render",     "materials", "pairs",   "particles", "planes", "meshes", "terrain"};
+                                        "render",     "materials", "pairs",   "particles", "planes", "meshes", "terrain",
+                                        "streams",    "removals"};
     append_keys(known, schema().top);
     check_keys(root, std::move(known));
 }
@@ -139,6 +140,8 @@ Scene read_scene(const Node& root, const std::filesystem::path& file) {
     for (const auto& [name, node] : named_tables(root, "particles")) s.particles.push_back(read_group(node, name, s));
     for (const auto& [name, node] : named_tables(root, "planes")) s.planes.push_back(read_plane(node, name, s));
     for (const auto& [name, node] : named_tables(root, "meshes")) s.meshes.push_back(read_mesh(node, name, s));
+    for (const auto& [name, node] : named_tables(root, "streams")) s.streams.push_back(read_stream(node, name, s));
+    for (const auto& [name, node] : named_tables(root, "removals")) s.removals.push_back(read_removal(node, name, s));
     if (s.terrain && s.terrain->edge == TerrainEdge::walled) wall_terrain(s);
     return s;
 }

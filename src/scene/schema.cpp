@@ -125,22 +125,22 @@ void add_size_tables(Schema& s) {
     const auto length = [](std::string_view key, std::string_view text, bool required, std::string fallback = "") {
         return FieldInfo{.key = key, .text = text, .unit = unit::length, .range = positive, .typical = "0.1 m", .required = required, .fallback = std::move(fallback)};
     };
-    s.size = {"particles.NAME, radii of a lattice or a fill", "", {
+    s.size = {"particles.NAME, streams.NAME, radii of a lattice, a fill or a stream", "", {
         field(&SizeRow::law, {.key = "size", .text = "distribution of the radii, by number", .choices = {"fixed", "uniform", "normal", "lognormal", "table"}})}};
-    s.size_laws[0] = {"particles.NAME, size = \"fixed\"", "", {
+    s.size_laws[0] = {"particles.NAME, streams.NAME, size = \"fixed\"", "", {
         field(&SizeRow::radius, length("radius", "radius of every particle", true))}};
-    s.size_laws[1] = {"particles.NAME, size = \"uniform\"", "", {
+    s.size_laws[1] = {"particles.NAME, streams.NAME, size = \"uniform\"", "", {
         field(&SizeRow::minimum, length("radius_minimum", "smallest radius", true)),
         field(&SizeRow::maximum, length("radius_maximum", "largest radius", true))}};
-    s.size_laws[2] = {"particles.NAME, size = \"normal\"", "Truncated: radii beyond the two cut-offs are drawn again.", {
+    s.size_laws[2] = {"particles.NAME, streams.NAME, size = \"normal\"", "Truncated: radii beyond the two cut-offs are drawn again.", {
         field(&SizeRow::mean, length("radius_mean", "mean, before the cut-offs", true)),
         field(&SizeRow::deviation, length("radius_deviation", "standard deviation, before the cut-offs", true)),
         field(&SizeRow::minimum, length("radius_minimum", "lower cut-off", false, "mean - 3 deviations")),
         field(&SizeRow::maximum, length("radius_maximum", "upper cut-off", false, "mean + 3 deviations"))}};
-    s.size_laws[3] = {"particles.NAME, size = \"lognormal\"", s.size_laws[2].text, s.size_laws[2].fields};
+    s.size_laws[3] = {"particles.NAME, streams.NAME, size = \"lognormal\"", s.size_laws[2].text, s.size_laws[2].fields};
     s.size_laws[3].fields[2].fallback = "3 log-deviations below the median";
     s.size_laws[3].fields[3].fallback = "3 log-deviations above the median";
-    s.size_laws[4] = {"particles.NAME, size = \"table\"", "", {
+    s.size_laws[4] = {"particles.NAME, streams.NAME, size = \"table\"", "", {
         field(&SizeRow::radii, {.key = "radii", .text = "radii that occur", .unit = unit::length, .range = positive, .typical = "[0.01, 0.04]", .required = true}),
         field(&SizeRow::weights, {.key = "weights", .text = "their shares by number, in any proportion; []: equal", .range = non_negative, .typical = "[10, 1]"})}};
 }
@@ -184,6 +184,41 @@ void add_surface_tables(Schema& s) {
         field(&Terrain::edge, {.key = "edge", .text = "open: particles may leave the grid; walled: upright planes stand round it", .choices = {"open", "walled"}})}};
 }
 
+void add_stream_tables(Schema& s) {
+    s.inlet = {"streams.NAME", "Particles that appear during the run, apart from all others, in a box or in a layer in front of a surface. What finds no place waits for the next insertion.", {
+        field(&InletRow::type, {.key = "type", .text = "where they appear", .choices = {"box", "surface"}, .required = true})}};
+    s.stream = {"streams.NAME, every type", "Their radii: see `size`.", {
+        field(&ParticleStream::material, {.key = "material", .text = "name of their material", .required = true}),
+        field(&ParticleStream::rate, {.key = "rate", .text = "particles a second, or mass a second as text: \"2 kg/s\"", .unit = unit::per_time, .range = positive, .typical = "500", .required = true}),
+        field(&ParticleStream::total, {.key = "total", .text = "particles, or mass as text, \"50 kg\", after which the stream ends", .range = positive, .typical = "20000"}),
+        field(&ParticleStream::start, {.key = "start", .text = "when it starts", .unit = unit::time, .range = non_negative, .typical = "0 s"}),
+        field(&ParticleStream::stop, {.key = "stop", .text = "when it stops", .unit = unit::time, .range = non_negative, .typical = "5 s", .fallback = "never"}),
+        field(&ParticleStream::velocity, {.key = "velocity", .text = "of every particle when it appears", .unit = unit::speed, .typical = "[0, 0, -1]"}),
+        field(&ParticleStream::velocity_spread, {.key = "velocity_spread", .text = "each component is drawn evenly from velocity - spread to velocity + spread", .unit = unit::speed, .range = non_negative, .typical = "[0.1, 0.1, 0]"}),
+        field(&ParticleStream::angular_velocity, {.key = "angular_velocity", .text = "of every particle when it appears", .unit = unit::rotation}),
+        field(&ParticleStream::interval, {.key = "interval", .text = "time between two insertions; 0: as long as a particle takes to cross the inlet", .unit = unit::time, .range = non_negative, .typical = "0.05 s"}),
+        field(&ParticleStream::attempts, {.key = "attempts", .text = "places tried for a particle at an insertion; after ten particles in a row without a place the rest wait", .range = {1, 1e6}, .typical = "100"})}};
+    s.inlet_box = {"streams.NAME, type = \"box\"", "Spheres appear wholly inside the box; along a periodic axis that it spans, it goes on at the other end.", {
+        field(&InletBoxRow::lower, {.key = "lower", .text = "lower corner of the box", .unit = unit::length, .required = true}),
+        field(&InletBoxRow::upper, {.key = "upper", .text = "upper corner of the box", .unit = unit::length, .required = true})}};
+    s.inlet_surface = {"streams.NAME, type = \"surface\"", "Spheres appear wholly inside the layer that the surface sweeps on the way of the velocity (of gravity where there is none). Needs one of mesh and file.", {
+        field(&InletSurfaceRow::mesh, {.key = "mesh", .text = "name of a mesh of the scene; the inlet moves with it", .typical = "\"lid\""}),
+        field(&InletSurfaceRow::file, {.key = "file", .text = "STL or OBJ of a surface that is no boundary; relative to the scene file", .typical = "\"inlet.stl\""}),
+        field(&InletSurfaceRow::depth, {.key = "depth", .text = "thickness of the layer along the way", .unit = unit::length, .range = positive, .typical = "0.1 m", .required = true}),
+        field(&InletSurfaceRow::lower, {.key = "lower", .text = "only the facets wholly inside a box: its lower corner", .unit = unit::length}),
+        field(&InletSurfaceRow::upper, {.key = "upper", .text = "its upper corner", .unit = unit::length})}};
+    s.inlet_file = {"streams.NAME, place of a surface's own file", "As for `meshes.NAME`.", {s.mesh.fields[1], s.mesh.fields[2], s.mesh.fields[3]}};
+    s.removal = {"removals.NAME", "Particles whose centre is in a region are taken out, counted, and listed in `removed.csv`.", {
+        field(&Removal::region, {.key = "type", .text = "box; half_space; outside: everything outside the domain, which then is no limit", .choices = {"box", "half_space", "outside"}, .required = true}),
+        field(&Removal::steps, {.key = "steps", .text = "steps between two looks", .range = {1, 1e9}, .typical = "100"})}};
+    s.removal_box = {"removals.NAME, type = \"box\"", "", {
+        field(&RemovalBoxRow::lower, {.key = "lower", .text = "lower corner of the box", .unit = unit::length, .required = true}),
+        field(&RemovalBoxRow::upper, {.key = "upper", .text = "upper corner of the box", .unit = unit::length, .required = true})}};
+    s.half_space = {"removals.NAME, type = \"half_space\"", "", {
+        field(&Removal::point, {.key = "point", .text = "a point of the plane", .unit = unit::length, .typical = "[0, 0, -1]", .required = true}),
+        field(&Removal::normal, {.key = "normal", .text = "towards what is taken out, any length", .typical = "[0, 0, -1]", .required = true})}};
+}
+
 Schema make_schema() {
     Schema s;
     add_run_tables(s);
@@ -194,6 +229,7 @@ Schema make_schema() {
     add_size_tables(s);
     add_plane_tables(s);
     add_surface_tables(s);
+    add_stream_tables(s);
     return s;
 }
 

@@ -39,6 +39,21 @@ struct FillRow {
     std::optional<std::int64_t> count;
     std::optional<double> solid_fraction;
 };
+enum class Inlet { box, surface };
+struct InletRow {
+    Inlet type = Inlet::box;
+};
+struct InletBoxRow {
+    Vec3d lower, upper;
+};
+struct InletSurfaceRow {
+    std::optional<std::string> mesh, file;
+    double depth = 0;
+    std::optional<Vec3d> lower, upper;
+};
+struct RemovalBoxRow {
+    Vec3d lower, upper;
+};
 /// Cut-offs are optional: three deviations where they are not given.
 struct SizeRow {
     SizeLaw law = SizeLaw::fixed;
@@ -73,6 +88,13 @@ struct Schema {
     Section<Mesh> mesh;
     Section<TerrainRow> terrain_files;
     Section<Terrain> terrain;
+    Section<InletRow> inlet;
+    Section<ParticleStream> stream;
+    Section<InletBoxRow> inlet_box;
+    Section<InletSurfaceRow> inlet_surface;
+    Section<Mesh> inlet_file;                   ///< where its own file lies
+    Section<Removal> removal, half_space;
+    Section<RemovalBoxRow> removal_box;
     Section<Motion> motion, rotation, oscillation;
     Section<PathRow> motion_path;
 
@@ -85,6 +107,8 @@ struct Schema {
         for (const auto& law : size_laws) visit(law);
         visit(plane), visit(mesh_file), visit(mesh), visit(terrain_files), visit(terrain);
         visit(motion), visit(rotation), visit(oscillation), visit(motion_path);
+        visit(inlet), visit(stream), visit(inlet_box), visit(inlet_surface), visit(inlet_file);
+        visit(removal), visit(removal_box), visit(half_space);
     }
 };
 

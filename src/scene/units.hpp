@@ -23,6 +23,9 @@ inline constexpr Unit angle{"rad", "deg"};
 inline constexpr Unit view_angle{"deg", "rad"};
 inline constexpr Unit rotation{"rad/s", "deg/s, rpm"};
 inline constexpr Unit frequency{"Hz", "kHz, 1/s"};
+inline constexpr Unit mass{"kg", "g, mg, t"};
+inline constexpr Unit per_time{"1/s", "1/min, 1/h"};
+inline constexpr Unit mass_rate{"kg/s", "g/s, kg/h, t/h"};
 }  // namespace unit
 
 /// A quantity read from text in the unit of its field, or (problem not empty) why it could not be.

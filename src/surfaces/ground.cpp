@@ -115,7 +115,11 @@ ElevationGrid load_surface_before(const Scene& scene) {
 }
 
 TriangleMesh load_mesh(const Scene& scene, const Mesh& mesh, MeshReport* report) {
-    const std::string place = surfaces::place_of(scene, "meshes." + mesh.name + ".file", mesh.file);
+    return surfaces::load_surface(scene, mesh, "meshes." + mesh.name + ".file", report);
+}
+
+TriangleMesh surfaces::load_surface(const Scene& scene, const Mesh& mesh, const std::string& key, MeshReport* report) {
+    const std::string place = surfaces::place_of(scene, key, mesh.file);
     TriangleMesh m = mesh.geometry ? *mesh.geometry : surfaces::read_mesh_file(surfaces::resolve(scene, mesh.file), place);
     for (Vec3d& v : m.vertices) {
         v *= mesh.scale;

@@ -14,6 +14,8 @@ std::string place_of(const Scene&, const std::string& key, const std::filesystem
 /// Where a path of the scene leads.
 std::filesystem::path resolve(const Scene&, const std::filesystem::path&);
 
+/// As load_mesh, for the file that the scene names under `key`.
+TriangleMesh load_surface(const Scene&, const Mesh&, const std::string& key, MeshReport*);
 /// Triangles as the file has them. Throws InputError that begins with `place`.
 TriangleMesh read_mesh_file(const std::filesystem::path&, const std::string& place);
 /// Throws InputError that begins with `place`.

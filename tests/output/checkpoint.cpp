@@ -38,6 +38,15 @@ Checkpoint sample(std::size_t particles, std::size_t contacts, std::size_t walls
     fill(c.wall_particle, walls);
     fill(c.wall_plane, walls);
     fill(c.wall_history, walls);
+    c.placed = 77;
+    c.next_id = 0x123456789;
+    for (auto* array : {&c.stream_key, &c.stream_since, &c.stream_drawn, &c.stream_tried, &c.stream_attempts, &c.stream_inserted}) fill(*array, 3);
+    for (auto* array : {&c.stream_drawn_mass, &c.stream_inserted_mass}) fill(*array, 3);
+    fill(c.waiting_stream, walls);
+    fill(c.waiting_number, walls);
+    fill(c.removal_key, 2);
+    fill(c.removal_particles, 2);
+    fill(c.removal_mass, 2);
     c.scene = "title = \"Gr\xc3\xb6\xc3\x9f" "e \xe7\xb2\x92 \xf0\x9f\xaa\xa8\"\n# end\n";
     return c;
 }
@@ -55,6 +64,13 @@ void expect_same(const Checkpoint& a, const Checkpoint& b) {
     EXPECT_TRUE(same_bits(a.contact_a, b.contact_a) && same_bits(a.contact_b, b.contact_b));
     EXPECT_TRUE(same_bits(a.contact_history, b.contact_history) && same_bits(a.wall_history, b.wall_history));
     EXPECT_TRUE(same_bits(a.wall_particle, b.wall_particle) && same_bits(a.wall_plane, b.wall_plane));
+    EXPECT_EQ(a.placed, b.placed);
+    EXPECT_EQ(a.next_id, b.next_id);
+    EXPECT_TRUE(same_bits(a.stream_key, b.stream_key) && same_bits(a.stream_since, b.stream_since) && same_bits(a.stream_drawn, b.stream_drawn));
+    EXPECT_TRUE(same_bits(a.stream_tried, b.stream_tried) && same_bits(a.stream_attempts, b.stream_attempts) && same_bits(a.stream_inserted, b.stream_inserted));
+    EXPECT_TRUE(same_bits(a.stream_drawn_mass, b.stream_drawn_mass) && same_bits(a.stream_inserted_mass, b.stream_inserted_mass));
+    EXPECT_TRUE(same_bits(a.waiting_stream, b.waiting_stream) && same_bits(a.waiting_number, b.waiting_number));
+    EXPECT_TRUE(same_bits(a.removal_key, b.removal_key) && same_bits(a.removal_particles, b.removal_particles) && same_bits(a.removal_mass, b.removal_mass));
     EXPECT_EQ(a.scene, b.scene);
 }
 
@@ -97,7 +113,7 @@ TEST_F(CheckpointFile, OfAnotherVersionSaysBoth) {
     H5Awrite(attribute, H5T_NATIVE_UINT32, &version);
     H5Aclose(attribute);
     H5Fclose(file);
-    EXPECT_TRUE(has(error(), "version 77, this program reads version 2")) << error();
+    EXPECT_TRUE(has(error(), "version 77, this program reads version 3")) << error();
 }
 
 TEST_F(CheckpointFile, CutAnywhereIsAnError) {

@@ -123,10 +123,56 @@ const std::vector<BadScene> particles{
     {"motion_key", plane("motion = {speed = 2}\n"), "9:11", {"key 'planes.p.motion.speed': unknown key", "oscillation, path, rotation, start, stop, velocity"}},
 };
 
+/// A stream below with_grain; its header is line 7, its lines start at 12.
+std::string stream(const std::string& lines) {
+    return with_grain + "[streams.s]\nmaterial = \"grain\"\nvelocity = [0, 0, -1]\ndepth = 1\ntype = \"surface\"\n" + lines;
+}
+/// The same with a box of 1 x 1 x 1 m; lines start at 13.
+std::string box_stream(const std::string& lines) {
+    return with_grain + "[streams.s]\nmaterial = \"grain\"\nvelocity = [0, 0, -1]\ntype = \"box\"\nlower = [0, 0, 0]\nupper = [1, 1, 1]\n" + lines;
+}
+std::string removal(const std::string& lines) { return with_grain + "[removals.r]\n" + lines; }  // at 8
+const std::string rate = "rate = 100\n";
+
+const std::vector<BadScene> exchanges{
+    {"stream_without_type", with_grain + "[streams.s]\nmaterial = \"grain\"\n", "7:1", {"key 'streams.s.type' is missing: where they appear (one of box, surface)"}},
+    {"stream_without_rate", box_stream(radius), "7:1", {"key 'streams.s.rate' is missing", "a typical value is 500"}},
+    {"stream_zero_rate", box_stream(radius + "rate = 0\n"), "14:8", {"key 'streams.s.rate' = 0: must be greater than 0 1/s"}},
+    {"stream_rate_unit", box_stream(radius + "rate = \"2 kg\"\n"), "14:8", {"a number of particles a second, or a mass as text in kg/s, g/s, kg/h, t/h"}},
+    {"stream_total_unit", box_stream(radius + rate + "total = \"2 m\"\n"), "15:9", {"a number of particles, or a mass as text in kg, g, mg, t"}},
+    {"stream_without_radius", box_stream(rate), "7:1", {"key 'streams.s.radius' is missing"}},
+    {"stream_material", box_stream(radius + rate + "friction = 1\n"), "15:1", {"key 'streams.s.friction': not a key of type = \"box\", size = \"fixed\""}},
+    {"stream_unknown_material", "[simulation]\ndt = 1\nduration = 1\n[materials.a]\n[streams.s]\ntype = \"box\"\nmaterial = \"b\"\nrate = 1\n", "7:12", {"unknown material 'b'"}},
+    {"stream_zero_volume", with_grain + "[streams.s]\nmaterial = \"grain\"\ntype = \"box\"\nlower = [0, 0, 1]\nupper = [1, 1, 1]\n" + rate + radius, "11:9", {"key 'streams.s.upper'", "greater than 'lower' along z (1 m)"}},
+    {"stream_outside_domain", box_stream(radius + rate + "[domain]\nlower = [0, 0.5, 0]\nupper = [2, 2, 2]\n"), "11:9", {"key 'streams.s.lower'", "leaves the domain along y (0.5 to 2 m)"}},
+    {"stream_grains_too_large", box_stream(rate + "radius = 0.6\n"), "12:9", {"key 'streams.s.upper'", "1 m wide along x and the largest particle 1.2 m"}},
+    {"stream_some_grains_too_large", box_stream(rate + "size = \"uniform\"\nradius_minimum = 0.1\nradius_maximum = 0.51\n"), "12:9", {"the largest particle 1.02 m"}},
+    {"stream_stop", box_stream(radius + rate + "start = 2\nstop = 2\n"), "16:8", {"key 'streams.s.stop'", "greater than start (2 s)"}},
+    {"stream_stays_where_it_is", "[simulation]\ndt = 1\nduration = 1\ngravity = [0, 0, 0]\n[materials.a]\n[streams.s]\ntype = \"box\"\nmaterial = \"a\"\nrate = 1\n", "6:1", {"key 'streams.s.velocity': nothing carries the particles out"}},
+    {"stream_attempts", box_stream(radius + rate + "attempts = 0\n"), "15:12", {"at least 1"}},
+    {"stream_spread", box_stream(radius + rate + "velocity_spread = [-1, 0, 0]\n"), "15:20", {"key 'streams.s.velocity_spread[0]' = -1: must be at least 0 m/s"}},
+    {"stream_without_surface", stream(radius + rate), "7:1", {"key 'streams.s.mesh'", "one of mesh (of the scene) and file (no boundary)"}},
+    {"stream_with_two_surfaces", stream(radius + rate + "mesh = \"m\"\nfile = \"f.stl\"\n"), "15:8", {"give mesh or file, not both"}},
+    {"stream_mesh_of_none", stream(radius + rate + "mesh = \"m\"\n"), "14:8", {"unknown mesh 'm': the scene has none; add a table [meshes.m], or give 'file'"}},
+    {"stream_mesh_not_found", stream(radius + rate + "mesh = \"lit\"\n[meshes.lid]\nfile = \"lid.stl\"\nmaterial = \"grain\"\n"), "14:8", {"unknown mesh 'lit'; did you mean 'lid'? Defined: lid"}},
+    {"stream_mesh_has_a_place", stream(radius + rate + "mesh = \"lid\"\nscale = 2\n[meshes.lid]\nfile = \"lid.stl\"\nmaterial = \"grain\"\n"), "15:9", {"key 'streams.s.scale'", "mesh 'lid' has its own place; give it in [meshes.lid]"}},
+    {"stream_layer_too_thin", stream("radius = 0.6\n" + rate + "file = \"a.stl\"\n"), "10:9", {"key 'streams.s.depth'", "the largest particle is 1.2 m wide; deepen the layer"}},
+    {"stream_half_a_box", stream(radius + rate + "file = \"a.stl\"\nlower = [0, 0, 0]\n"), "15:9", {"a box needs both corners; add 'upper'"}},
+    {"stream_of_two_kinds", stream(radius + rate + "file = \"a.stl\"\ndept = 1\n"), "15:1", {"not a key of type = \"surface\", size = \"fixed\"", "did you mean 'depth'"}},
+    {"removal_without_type", removal("steps = 10\n"), "7:1", {"key 'removals.r.type' is missing", "one of box, half_space, outside"}},
+    {"removal_box_inside_out", removal("type = \"box\"\nlower = [0, 0, 0]\nupper = [1, -1, 1]\n"), "10:9", {"key 'removals.r.upper'", "greater than 'lower' along y (0 m)"}},
+    {"removal_box_without_corner", removal("type = \"box\"\nlower = [0, 0, 0]\n"), "7:1", {"key 'removals.r.upper' is missing"}},
+    {"removal_of_another_type", removal("type = \"box\"\nnormal = [0, 0, 1]\n"), "9:1", {"not a key of type = \"box\""}},
+    {"removal_zero_normal", removal("type = \"half_space\"\npoint = [0, 0, 0]\nnormal = [0, 0, 0]\n"), "10:10", {"zero vector"}},
+    {"removal_outside_of_nothing", removal("type = \"outside\"\n"), "8:8", {"there is no domain to be outside of; give domain.lower and domain.upper"}},
+    {"removal_never_looks", removal("type = \"outside\"\nsteps = 0\n"), "9:9", {"key 'removals.r.steps' = 0: must be at least 1"}},
+};
+
 std::string name_of(const testing::TestParamInfo<BadScene>& info) { return info.param.name; }
 
 INSTANTIATE_TEST_SUITE_P(Syntax, BadScenes, testing::ValuesIn(syntax), name_of);
 INSTANTIATE_TEST_SUITE_P(Values, BadScenes, testing::ValuesIn(values), name_of);
+INSTANTIATE_TEST_SUITE_P(Exchanges, BadScenes, testing::ValuesIn(exchanges), name_of);
 INSTANTIATE_TEST_SUITE_P(Particles, BadScenes, testing::ValuesIn(particles), name_of);
 
 TEST(BadFile, IsNamed) {

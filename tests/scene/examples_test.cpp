@@ -37,7 +37,7 @@ TEST_P(Examples, LoadAndPlaceParticlesOnTheRightSideOfEveryPlane) {
     const Scene scene = example(GetParam());
     EXPECT_FALSE(scene.title.empty());
     const InitialState s = place_particles(scene);
-    EXPECT_GT(s.size(), 0u);
+    EXPECT_TRUE(s.size() > 0 || !scene.streams.empty());
     for (const Plane& plane : scene.planes)
         for (std::size_t i = 0; i < s.size(); ++i)
             ASSERT_GE(dot(plane.normal, s.positions[i] - plane.point), s.radii[i] * (1 - 1e-9))

@@ -204,6 +204,76 @@ TEST(ContactParameters, APairRowReplacesOnlyWhatItGives) {
     EXPECT_EQ(contact_parameters(s, 0, 0, false).friction, 0.5);
 }
 
+TEST(Parse, StreamsAndRemovals) {
+    const Scene s = parse(with_grain + R"(
+[streams.feed]
+type = "box"
+material = "grain"
+rate = "7.2 t/h"
+total = 500
+lower = [0, 0, 0]
+upper = ["50 cm", 1, 1]
+radius = "5 mm"
+start = "1 min"
+velocity = [0, 0, -1]
+velocity_spread = [0.1, 0, 0]
+[streams.lid]
+type = "surface"
+material = "grain"
+rate = "120 1/min"
+total = "3 t"
+file = "lid.stl"
+scale = 0.001
+depth = 0.1
+lower = [0, 0, 0]
+upper = [1, 1, 0]
+size = "uniform"
+radius_minimum = 0.01
+radius_maximum = 0.02
+[domain]
+lower = [-5, -5, -5]
+upper = [5, 5, 5]
+[removals.below]
+type = "half_space"
+point = [0, 0, -1]
+normal = [0, 0, -2]
+[removals.rest]
+type = "outside"
+steps = 7
+[removals.bin]
+type = "box"
+lower = [0, 0, 0]
+upper = [1, 1, 9]
+)");
+    ASSERT_EQ(s.streams.size(), 2u);
+    const ParticleStream &feed = s.streams[0], &lid = s.streams[1];
+    EXPECT_EQ(feed.name, "feed");
+    EXPECT_DOUBLE_EQ(feed.rate.mass, 2);
+    EXPECT_EQ(feed.rate.particles, 0);
+    EXPECT_EQ(feed.total.particles, 500);
+    EXPECT_EQ(feed.start, 60);
+    EXPECT_EQ(feed.stop, std::numeric_limits<double>::infinity());
+    EXPECT_EQ(std::get<Box>(feed.inlet).upper, (Vec3d{0.5, 1, 1}));
+    EXPECT_EQ(feed.size.radius, 0.005);
+    EXPECT_EQ(feed.velocity_spread.x, 0.1);
+    EXPECT_EQ(feed.attempts, 100);
+    EXPECT_DOUBLE_EQ(lid.rate.particles, 2);
+    EXPECT_EQ(lid.total.mass, 3000);
+    const auto& surface = std::get<InletSurface>(lid.inlet);
+    EXPECT_EQ(surface.surface.file, "lid.stl");
+    EXPECT_EQ(surface.surface.scale, 0.001);
+    EXPECT_EQ(surface.depth, 0.1);
+    EXPECT_EQ(surface.facets->upper.y, 1);
+    EXPECT_EQ(largest_radius(lid.size), 0.02);
+    EXPECT_EQ(smallest_radius(lid.size), 0.01);
+    ASSERT_EQ(s.removals.size(), 3u);
+    EXPECT_EQ(s.removals[0].normal, (Vec3d{0, 0, -1}));
+    EXPECT_EQ(s.removals[0].steps, 100);
+    EXPECT_EQ(s.removals[1].region, RemovalRegion::outside);
+    EXPECT_EQ(s.removals[1].steps, 7);
+    EXPECT_EQ(s.removals[2].box.upper.z, 9);
+}
+
 /// docs/scene.md holds schema_text() between two marks; GRAINRAY_UPDATE_DOCS=1 writes it there.
 TEST(Schema, DocsHoldTheFieldTable) {
     const std::string path = project_folder() / "docs/scene.md", begin = "<!-- fields -->\n",
