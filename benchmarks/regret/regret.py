@@ -31,12 +31,11 @@ CPU = {
                                                "planes.far.point=[0,0.6,0]"]),
     "debris flow": ("debris_flow.toml", 5000, ["terrain.before={folder}/flume_before.asc", "terrain.after={folder}/flume_after.asc"]),
 }
-BIGGER = ["particles.mixture.lower=[0,0,0]", "particles.mixture.upper=[1.6,1.6,2.6]", "planes.right.point=[1.6,0,0]", "planes.far.point=[0,1.6,0]"]
 CUDA = {
     "column 0.1 M": ("column_collapse.toml", 8000, column(10)),
-    "column 1.6 M": ("column_collapse.toml", 3000, column(160)),
-    "log-normal 1:8": ("lognormal.toml", 6000, BIGGER),
-    "two sizes 1:32": ("two_size.toml", 3000, BIGGER),
+    "log-normal 1:8": ("lognormal.toml", 8000, ["particles.mixture.upper=[1.6,1.6,2.6]", "planes.right.point=[1.6,0,0]", "planes.far.point=[0,1.6,0]"]),
+    "two sizes 1:32": ("two_size.toml", 5000, ["particles.mixture.upper=[0.7,0.7,0.9]", "planes.right.point=[0.7,0,0]", "planes.far.point=[0,0.7,0]"]),
+    "column 1.6 M": ("column_collapse.toml", 2500, column(160)),
 }
 FIXED = [("cells", 0, 0), ("rays", 0, 0)] + [("cells", interval, 0) for interval in (15, 30, 60)] + [("cells", 0, skin) for skin in (0.03, 0.1, 0.3)]
 

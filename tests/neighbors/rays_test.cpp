@@ -2,7 +2,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <random>
 
+#include "neighbors/rays/boxes.hpp"
 #include "neighbors/rays/common.hpp"
 #include "neighbors/rays/refit.hpp"
 #include "neighbors/rays/rows.hpp"
@@ -98,12 +100,53 @@ TEST(Refit, NeverWhereItCostsAsMuchAndLongWhereSearchesStayFast) {
     EXPECT_GT(fine.cycle(), 50);
 }
 
-TEST(CommonReach, AllOfEqualsAndNotTheBoulders) {
-    EXPECT_EQ(common_reach(std::vector<float>(100, 0.5f), 0.5f), 0.5f);
+TEST(Limits, AllOfEqualsAreSmallAndBouldersAreNot) {
+    EXPECT_EQ(limits(std::vector<float>(100, 0.5f), 0.5f).small, 0.5f);
     std::vector<float> mixed(1000, 0.1f);
     mixed[500] = 50;
-    EXPECT_FLOAT_EQ(common_reach(mixed, 50), 0.1f);
-    EXPECT_EQ(common_reach({0, 0, 0}, 0), 0.0f);
+    EXPECT_FLOAT_EQ(limits(mixed, 50).small, 0.1f);
+    EXPECT_EQ(limits({0, 0, 0}, 0).small, 0.0f);
+    EXPECT_EQ(limits({1}, 2).small, 2.0f);
+}
+
+TEST(Limits, OfWideMixturesLieBetween) {
+    std::vector<float> reaches;
+    for (int i = 0; i < 1000; ++i) reaches.push_back(std::exp(2.0f * static_cast<float>(i) / 1000));
+    const Limits l = limits(reaches, reaches.back());
+    EXPECT_GT(l.small, 1.5f);
+    EXPECT_LT(l.small, 6.0f);
+    EXPECT_GE(l.common, l.small);
+}
+
+bool holds(const Bounds& b, const Vec3f& c) {
+    return b.lower.x <= c.x && c.x <= b.upper.x && b.lower.y <= c.y && c.y <= b.upper.y && b.lower.z <= c.z && c.z <= b.upper.z;
+}
+
+/// What rays in the two worlds of boxes.hpp find, box by box, against the predicate: each pair once, whatever the classes.
+TEST(Classes, EachPairHasOneFinder) {
+    std::mt19937_64 e(5);
+    std::uniform_real_distribution<float> u(0, 1);
+    std::vector<Sphere> points;
+    for (int i = 0; i < 600; ++i) points.push_back({10 * u(e), 10 * u(e), 10 * u(e), 0.1f * std::exp(2 * u(e))});
+    for (int i = 0; i < 40; ++i) points.push_back(points[static_cast<std::size_t>(i * 3)]);           // duplicates
+    for (int i = 0; i < 40; ++i) points.push_back({0.5f * static_cast<float>(i % 8), 3, 0.5f * static_cast<float>(i / 8), 0.25f});  // at the reach, faces shared
+    const Frame frame = frame_of({{{0, 0, 0}, {10, 10, 10}}}, 2, {});
+    const float largest = 0.74f;
+    for (const auto& [small, common] : {std::pair{largest, largest}, {0.25f, 0.25f}, {0.25f, 0.5f}, {0.2f, largest}, {0.4f, 0.1f}}) {
+        const Classes classes{small, common, 1.25f * frame.scale * (10 + 4 * 2 * largest)};
+        for (std::uint32_t i = 0; i < points.size(); ++i)
+            for (std::uint32_t j = 0; j < i; ++j) {
+                int found = 0;
+                for (const auto& [a, b] : {std::pair{i, j}, {j, i}}) {
+                    const Sphere &ray = points[a], &box = points[b];
+                    Vec3f start = frame.point({ray.x, ray.y, ray.z});
+                    if (ray.reach > small) start.x += classes.beside;
+                    const bool met = holds(box_for_small(box, classes, frame), start) || (box.reach > small && holds(box_for_larger(box, classes, frame), start));
+                    found += met && finds(box, b, ray, a, ray.x - box.x, classes) && pair_test(ray, box);
+                }
+                ASSERT_EQ(found, pair_test(points[i], points[j])) << i << " " << j << " small " << small << " common " << common;
+            }
+    }
 }
 
 }  // namespace

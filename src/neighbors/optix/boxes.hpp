@@ -14,8 +14,11 @@ public:
     std::size_t memory_bytes() const { return boxes_.bytes() + tree_.bytes() + scratch_.bytes(); }
 
 private:
+    void compact();
+
     Array<OptixAabb> boxes_{Device::cuda};
     Array<char> tree_{Device::cuda}, scratch_{Device::cuda};
+    Array<std::uint64_t> compacted_size_{Device::cuda, 1};
     OptixTraversableHandle handle_ = 0;
 };
 

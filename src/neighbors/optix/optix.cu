@@ -33,10 +33,50 @@ void place_boxes(View<const Sphere> spheres, View<OptixAabb> boxes, const BoxOf&
         boxes[k] = {b.lower.x, b.lower.y, b.lower.z, b.upper.x, b.upper.y, b.upper.z};
     });
 }
-struct FinderBox {
+struct BoxForSmall {
     rays::Frame frame;
-    float common;
-    GR_HD rays::Bounds operator()(const Sphere& s) const { return rays::finder_box(s, common, frame); }
+    rays::Classes classes;
+    GR_HD rays::Bounds operator()(const Sphere& s) const { return rays::box_for_small(s, classes, frame); }
+};
+void place_boxes_of_larger(View<const Sphere> spheres, View<const std::uint32_t> larger, View<OptixAabb> boxes, const rays::Frame& frame,
+                           const rays::Classes& classes) {
+    const rays::Frame f = frame;
+    const rays::Classes c = classes;
+    for_each(larger.size, [=] GR_HD(std::size_t k) {
+        const rays::Bounds b = rays::box_for_larger(spheres[larger[k]], c, f);
+        boxes[k] = {b.lower.x, b.lower.y, b.lower.z, b.upper.x, b.upper.y, b.upper.z};
+    });
+}
+
+struct Larger {
+    GR_HD float operator()(float a, float b) const { return a > b ? a : b; }
+};
+
+/// The points that are larger than small ones when a tree is built, and stay so while it is refitted.
+class LargerPoints {
+public:
+    void choose(View<const Sphere> spheres, float small) {
+        const std::size_t n = spheres.size;
+        places_.resize_discard(n + 1);
+        const auto places = places_.view();
+        for_each(n + 1, [=] GR_HD(std::size_t p) { places[p] = p < n && spheres[p].reach > small; });
+        points_.resize_discard(exclusive_scan(places));
+        const auto points = points_.view();
+        for_each(n, [=] GR_HD(std::size_t p) {
+            if (places[p + 1] != places[p]) points[places[p]] = static_cast<std::uint32_t>(p);
+        });
+    }
+    /// The largest reach among the others.
+    float largest_small(View<const Sphere> spheres) const {
+        const auto places = places_.view();
+        return reduce(spheres.size, 0.0f, [=] GR_HD(std::size_t p) { return places[p + 1] == places[p] ? spheres[p].reach : 0.0f; }, Larger{});
+    }
+    View<const std::uint32_t> points() const { return points_.view(); }
+    std::size_t memory_bytes() const { return places_.bytes() + points_.bytes(); }
+
+private:
+    Array<std::uint32_t> places_{device};  ///< how many stand before each point
+    Array<std::uint32_t> points_{device};
 };
 struct WideBox {
     rays::Frame frame;
@@ -122,7 +162,7 @@ public:
     }
     std::string note() const override { return optix::Machine::get().status().reason; }
     std::size_t memory_bytes() const override {
-        return order_.memory_bytes() + tree_.memory_bytes() + spheres_.bytes() + slots_.memory_bytes() + memory_.bytes();
+        return order_.memory_bytes() + tree_.memory_bytes() + larger_.memory_bytes() + spheres_.bytes() + slots_.memory_bytes() + memory_.bytes();
     }
 
 private:
@@ -132,6 +172,7 @@ private:
     }
     rays::Slots trace(Search, const Packed& sources, const Packed& points, const Request&);
     bool update_tree(Search, const Packed& sources, const Packed& points);
+    void place_pair_boxes(const Packed&, bool refit);
 
     const bool published_;
     BoxOrder order_;
@@ -142,25 +183,46 @@ private:
     rays::RowsMemory memory_{device};
     Search last_search_ = Search::pairs;
     rays::Frame frame_;
-    float common_ = 0;
+    rays::Classes classes_{};
+    LargerPoints larger_;
     Array<std::uint32_t> doubtful_{device, 1};
     Array<Sphere> spheres_{device};  ///< in the order of the boxes
 };
 
+void OptiX::place_pair_boxes(const Packed& p, bool refit) {
+    const View<const Sphere> spheres = spheres_.view();
+    if (!refit) {
+        const rays::Limits limits = rays::limits(sample_reaches(spheres), p.max_reach);
+        classes_ = {limits.small, limits.common, 0};
+        larger_.choose(spheres, limits.small);
+    }
+    if (larger_.points().size) classes_.small = larger_.largest_small(spheres);
+    else classes_.small = p.max_reach;
+    const float scale = frame_.scale, wide = 2 * (scale * p.max_reach) + scale * frame_.period.x;
+    classes_.beside = larger_.points().size ? 1.25f * ((scale * p.upper.x - scale * p.lower.x) + 2 * wide) : 0;
+    const std::size_t n = spheres.size;
+    tree_.boxes().resize_discard(n + larger_.points().size);
+    const View<OptixAabb> boxes = tree_.boxes().view();
+    place_boxes(spheres, {boxes.data, n}, BoxForSmall{frame_, classes_});
+    place_boxes_of_larger(spheres, larger_.points(), {boxes.data + n, boxes.size - n}, frame_, classes_);
+}
+
 /// True where the tree was refitted.
 bool OptiX::update_tree(Search search, const Packed& sources, const Packed& p) {
     const std::size_t n = p.size();
-    if (n > most_boxes)
-        throw InputError(std::to_string(n) + " points: search by rays on a GPU takes at most " + std::to_string(most_boxes) + "; search by cells");
+    if (n > most_boxes / 2)
+        throw InputError(std::to_string(n) + " points: search by rays on a GPU takes at most " + std::to_string(most_boxes / 2) + "; search by cells");
     const bool refit = search == last_search_ && tree_.handle() && !policy_.rebuild() && order_.follow(p);
     if (!refit) order_.sort(p);
     last_search_ = search;
     spheres_.resize_discard(n);
     place_spheres(p, order_.order(), spheres_.view());
-    tree_.boxes().resize_discard(n);
-    if (!refit && search == Search::pairs) common_ = rays::common_reach(sample_reaches(spheres_.view()), p.max_reach);
-    if (search == Search::pairs) place_boxes(spheres_.view(), tree_.boxes().view(), FinderBox{frame_, common_});
-    else place_boxes(spheres_.view(), tree_.boxes().view(), WideBox{frame_, sources.max_reach});
+    if (search == Search::pairs) {
+        place_pair_boxes(p, refit);
+    } else {
+        tree_.boxes().resize_discard(n);
+        place_boxes(spheres_.view(), tree_.boxes().view(), WideBox{frame_, sources.max_reach});
+    }
     tree_.build(refit);
     return refit;
 }
@@ -183,7 +245,8 @@ rays::Slots OptiX::trace(Search search, const Packed& sources, const Packed& poi
     q.frame = frame_;
     q.bounds = {frame_.box(points.lower, widest).lower, frame_.box(points.upper, widest).upper};
     q.periodic = r.periodic();
-    q.common = common_;
+    q.classes = search == Search::pairs ? classes_ : rays::Classes{3e38f, 3e38f, 0};
+    q.larger = larger_.points();
     q.doubtful = doubtful_.view();
     const rays::Slots slots = slots_.fill(sources.size(), search == Search::published, [&](const rays::Slots& s) {
         q.slots = s;

@@ -16,7 +16,8 @@ struct Parameters {
     neighbors::rays::Frame frame;
     neighbors::rays::Bounds bounds;         ///< of the boxes: an image beyond them meets nobody
     bool periodic;
-    float common;                           ///< boxes.hpp
+    neighbors::rays::Classes classes;       ///< boxes.hpp
+    View<const std::uint32_t> larger;       ///< points of the boxes after one for each point
     neighbors::rays::Slots slots;
     View<std::uint32_t> doubtful;           ///< rows.hpp
 };

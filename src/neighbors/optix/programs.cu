@@ -68,12 +68,14 @@ extern "C" __global__ void __raygen__rays() {
     const Sphere s = read(parameters().sources.data + k);
     const rays::Frame& frame = parameters().frame;
     unsigned left = 0, right = 0;
+    const float beside = s.reach > parameters().classes.small ? parameters().classes.beside : 0;
     if (!parameters().periodic) {
-        cast(frame.point({s.x, s.y, s.z}), left, right, image_number({}));
+        const Vec3f start = frame.point({s.x, s.y, s.z});
+        cast({start.x + beside, start.y, start.z}, left, right, image_number({}));
     } else {
         rays::for_each_image(frame.period, [&](const Vec3i& shift) {
             const Vec3f start = frame.point(rays::image({s.x, s.y, s.z}, shift, frame.period));
-            if (!beyond(start)) cast(start, left, right, image_number(shift));
+            if (!beyond(start)) cast({start.x + beside, start.y, start.z}, left, right, image_number(shift));
         });
     }
     parameters().slots.left[k] = left;
@@ -84,11 +86,12 @@ extern "C" __global__ void __miss__nothing() {}
 
 /// Default: each pair found once.
 extern "C" __global__ void __intersection__pairs() {
-    const std::uint32_t k = ray_number(), p = optixGetPrimitiveIndex();
+    const std::uint32_t k = ray_number(), box = optixGetPrimitiveIndex(), points = static_cast<std::uint32_t>(parameters().points.size);
+    const std::uint32_t p = box < points ? box : parameters().larger[box - points];
     const Sphere a = read(parameters().sources.data + k), b = read(parameters().points.data + p);
     float dx = a.x - b.x;
     if (parameters().periodic && parameters().frame.period.x > 0) dx = neighbors::nearest_image(dx, parameters().frame.period.x);
-    if (k != p && rays::finds(b, p, a, k, dx, parameters().common) && near(a, b)) add_left(k, p);
+    if (k != p && rays::finds(b, p, a, k, dx, parameters().classes) && near(a, b)) add_left(k, p);
 }
 
 /// Published: each ray finds all its neighbours, later points from the left, earlier ones from the right.

@@ -46,22 +46,47 @@ inline Frame frame_of(std::initializer_list<Bounds> all, float widest, const Vec
     return {std::ldexp(1.0f, exponent > 110 ? -110 : exponent < -100 ? 100 : -exponent), period};
 }
 
-// The default search on a GPU: a point of the common reach or less has a box of half-width reach + common, on its left side
-// alone, and finds the common points there; a larger one has a box of half-width 2 reach, and finds all those that it owns.
-// Each pair has one finder, and nothing but `common`, which is chosen for speed, depends on the reaches of others.
+// The default search on a GPU. Rays of small points, up to the reach `small`, meet a box of every point: a small one's has
+// half-width reach + small and lies on its left side alone, a larger one's has that half-width on both sides. Rays of larger
+// points start `beside`, in a second world where only larger points have boxes, so that nobody meets a box made for others:
+// up to the reach `common` again of half-width reach + common on the left side alone; beyond, of 2 reach, for all those that
+// the point owns. Each pair has one finder, and nothing but `small` and `common`, which are chosen for speed, depends on the
+// reaches of others.
 
-GR_HD inline Bounds finder_box(const Sphere& s, float common, const Frame& frame) {
-    const bool half = s.reach <= common;
-    Bounds b = frame.box({s.x, s.y, s.z}, half ? s.reach + common : 2 * s.reach);
-    if (half) b.upper.x = s.x * frame.scale + frame.pad(0, s.x, frame.period.x);
+struct Classes {
+    float small, common;
+    float beside;  ///< along x, in the tracer's frame: farther than any box is wide
+};
+
+GR_HD inline Bounds left_half(const Sphere& s, float width, const Frame& frame) {
+    Bounds b = frame.box({s.x, s.y, s.z}, width);
+    b.upper.x = s.x * frame.scale + frame.pad(0, s.x, frame.period.x);
+    return b;
+}
+
+/// The box that rays of small points meet.
+GR_HD inline Bounds box_for_small(const Sphere& s, const Classes& classes, const Frame& frame) {
+    if (s.reach <= classes.small) return left_half(s, s.reach + classes.small, frame);
+    return frame.box({s.x, s.y, s.z}, s.reach + classes.small);
+}
+
+/// The box of a larger point that rays of larger points meet.
+GR_HD inline Bounds box_for_larger(const Sphere& s, const Classes& classes, const Frame& frame) {
+    Bounds b = s.reach <= classes.common ? left_half(s, s.reach + classes.common, frame) : frame.box({s.x, s.y, s.z}, 2 * s.reach);
+    const float rounding = 2.5e-7f * (magnitude(b.lower.x) + magnitude(b.upper.x) + classes.beside);
+    b.lower.x = (b.lower.x + classes.beside) - rounding;
+    b.upper.x = (b.upper.x + classes.beside) + rounding;
     return b;
 }
 
 /// Whether the pair is found by b, the point of a box, from a ray at a. `dx` is a.x - b.x of the images compared; the
 /// places of the points in any one order break ties.
-GR_HD inline bool finds(const Sphere& b, std::uint32_t place_b, const Sphere& a, std::uint32_t place_a, float dx, float common) {
-    if (b.reach > common) return owns(b, place_b, a, place_a);
-    return (a.reach <= common) & ((dx < 0) | ((dx == 0) & (place_b > place_a)));
+GR_HD inline bool finds(const Sphere& b, std::uint32_t place_b, const Sphere& a, std::uint32_t place_a, float dx, const Classes& classes) {
+    const bool left = (dx < 0) | ((dx == 0) & (place_b > place_a));
+    if (a.reach <= classes.small) return (b.reach > classes.small) | left;
+    if (b.reach <= classes.small) return false;
+    if (b.reach > classes.common) return owns(b, place_b, a, place_a);
+    return (a.reach <= classes.common) & left;
 }
 
 /// Calls visit(shift) for shift (0, 0, 0) and, on periodic axes, the images next to it.
