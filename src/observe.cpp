@@ -72,6 +72,8 @@ Statistics Simulation::statistics() const {
     Statistics out;
     out.step = s.step_number;
     out.time = s.time();
+    for (const Mesh& mesh : s.scene.meshes) out.surfaces.push_back({mesh.name, {}, {}, 0});
+    if (s.scene.terrain) out.surfaces.push_back({"terrain", {}, {}, 0});
     if (s.state.size() == 0) return out;
     const Totals t = s.stage.totals(s.state, s.scene.gravity);
     out.kinetic_translation = t.kinetic_translation;
@@ -88,7 +90,7 @@ Statistics Simulation::statistics() const {
     double sides = t.contact_sides;
     for (std::uint32_t q = 0; q < s.state.facets.count(); ++q) {
         const SurfaceTotals on = s.stage.surface_totals(s.state, s.law, q);
-        out.surfaces.push_back({q < s.scene.meshes.size() ? s.scene.meshes[q].name : "terrain", on.force, on.torque, on.contacts});
+        out.surfaces[q] = {out.surfaces[q].name, on.force, on.torque, on.contacts};
         out.max_overlap_ratio = std::max(out.max_overlap_ratio, on.max_overlap_ratio);
         out.contacts += on.contacts;
         sides += static_cast<double>(on.contacts);

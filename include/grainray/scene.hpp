@@ -181,7 +181,7 @@ struct ParticleStream {
     Amount rate;             ///< a second
     Amount total;            ///< after which it ends; not given: no end
     double start = 0, stop = std::numeric_limits<double>::infinity();  ///< s
-    double interval = 0;     ///< s between two insertions; 0: while a particle crosses the inlet
+    double interval = 0;     ///< s between two insertions; 0: a quarter of the time in which a particle crosses the inlet
     std::int64_t attempts = 100;  ///< places tried for a particle at an insertion
     SizeDistribution size;
     Vec3d velocity, velocity_spread, angular_velocity;  ///< each component of the velocity is drawn from velocity +- spread

@@ -9,6 +9,7 @@ namespace grainray {
 namespace {
 
 constexpr double most_fraction = 0.6;    // of the inlet's volume looks for a place at once; random insertion fills 0.4 at most
+constexpr double bursts = 4;             // while a particle crosses the inlet: one leaves gaps in the stream, and fits in fewer
 constexpr int most_failures = 10;        // in a row, after which an insertion ends
 constexpr double rounding = 1e-9;        // of what is due: 0.1 / 1e-3 steps are 100
 
@@ -30,8 +31,7 @@ Feeder::Feeder(const Scene& scene, const ParticleStream& stream, std::uint64_t n
     if (found == scene.materials.end()) throw InputError(fmt::format("{}: material '{}' is not defined", place_of(scene, stream, "material"), stream.material));
     material_ = static_cast<std::uint32_t>(found - scene.materials.begin());
     density_ = found->density;
-    const double interval = stream.interval > 0 ? stream.interval : inlet_.crossing_time();
-    interval_ = static_cast<std::uint64_t>(std::max(1.0, stream.interval > 0 ? steps_of(interval, scene.dt) : std::floor(std::min(interval / scene.dt, 9e18))));
+    interval_ = static_cast<std::uint64_t>(std::max(1.0, steps_of(stream.interval > 0 ? stream.interval : inlet_.crossing_time() / bursts, scene.dt)));
     if (std::isfinite(stream.stop)) stop_ = static_cast<std::uint64_t>(steps_of(stream.stop, scene.dt));
     state_.key = key_of("streams." + stream.name);
     state_.since = std::max(now, static_cast<std::uint64_t>(steps_of(stream.start, scene.dt)));

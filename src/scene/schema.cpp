@@ -196,7 +196,7 @@ void add_stream_tables(Schema& s) {
         field(&ParticleStream::velocity, {.key = "velocity", .text = "of every particle when it appears", .unit = unit::speed, .typical = "[0, 0, -1]"}),
         field(&ParticleStream::velocity_spread, {.key = "velocity_spread", .text = "each component is drawn evenly from velocity - spread to velocity + spread", .unit = unit::speed, .range = non_negative, .typical = "[0.1, 0.1, 0]"}),
         field(&ParticleStream::angular_velocity, {.key = "angular_velocity", .text = "of every particle when it appears", .unit = unit::rotation}),
-        field(&ParticleStream::interval, {.key = "interval", .text = "time between two insertions; 0: as long as a particle takes to cross the inlet", .unit = unit::time, .range = non_negative, .typical = "0.05 s"}),
+        field(&ParticleStream::interval, {.key = "interval", .text = "time between two insertions; 0: a quarter of the time in which a particle crosses the inlet", .unit = unit::time, .range = non_negative, .typical = "0.05 s"}),
         field(&ParticleStream::attempts, {.key = "attempts", .text = "places tried for a particle at an insertion; after ten particles in a row without a place the rest wait", .range = {1, 1e6}, .typical = "100"})}};
     s.inlet_box = {"streams.NAME, type = \"box\"", "Spheres appear wholly inside the box; along a periodic axis that it spans, it goes on at the other end.", {
         field(&InletBoxRow::lower, {.key = "lower", .text = "lower corner of the box", .unit = unit::length, .required = true}),

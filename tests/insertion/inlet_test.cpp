@@ -115,6 +115,7 @@ TEST_P(Inlets, ASolidLidThatMovesTakesItsInletAlong) {
     s.velocity = {0, 0, -3};
     c.scene.streams.push_back(s);
     Simulation simulation = c.start(GetParam());
+    ASSERT_EQ(simulation.statistics().surfaces.size(), 1u);  // without a particle too
     std::uint32_t next = 0;
     for (int k = 1; k <= 8; ++k) {
         simulation.run(100);
