@@ -66,6 +66,15 @@ Ground load(const Options& options, const Run& run) {
     return g;
 }
 
+/// What started: streams may fill an empty scene.
+Frame first_with_grains(const Run& run, const Frame& now) {
+    for (const fs::path& file : run.frames) {
+        if (file == run.mapped) break;
+        if (Frame frame = read_frame(file); frame.size() > 0) return frame;
+    }
+    return now;
+}
+
 deposit::Axis axis_of(const Options& options, const Frame& start, const Frame& now) {
     if (options.axis.empty()) return deposit::flow_axis(start, now);
     const Vec3d given = parse_vector("--axis", options.axis);
@@ -134,7 +143,7 @@ int measure_deposit(const Options& options) {
     require_finite("--cell", options.cell);
     const Run run = find_run(options.input);
     const Ground ground = load(options, run);
-    const Frame now = read_frame(run.mapped), start = run.mapped == run.frames.front() ? now : read_frame(run.frames.front());
+    const Frame now = read_frame(run.mapped), start = first_with_grains(run, now);
     const std::string name = name_for(options, run);
     const deposit::Maps maps = deposit::map(now, ground.surface, ground.cells, options.solid_fraction);
     write_maps(name, maps, options.solid_fraction);

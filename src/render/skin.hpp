@@ -15,10 +15,13 @@ struct Skin {
     std::vector<std::array<std::uint32_t, 3>> triangles;
     std::vector<std::array<Vec3f, 2>> edges;               ///< rims and creases, drawn as lines
 
-    /// The normal at a point of a triangle, not of unit length where those of its corners differ.
-    Vec3f normal(std::uint32_t triangle, float u, float v) const {
+    /// The smooth normal at a point of a triangle, on the side of the triangle that is seen along `ray`. Near an outline it
+    /// may lean away from the eye, which must not turn it over.
+    Vec3f normal(std::uint32_t triangle, float u, float v, const Vec3f& ray) const {
         const auto& [a, b, c] = triangles[triangle];
-        return normals[a] * (1 - u - v) + normals[b] * u + normals[c] * v;
+        const Vec3f smooth = normalized(normals[a] * (1 - u - v) + normals[b] * u + normals[c] * v);
+        const Vec3f flat = cross(vertices[b] - vertices[a], vertices[c] - vertices[a]);
+        return (dot(flat, ray) < 0) == (dot(flat, smooth) > 0) ? smooth : -smooth;
     }
 };
 

@@ -183,14 +183,14 @@ private:
     Surface terrain(const Ray& ray, const Vec3f& at, const RayScene::Hit& hit) const {
         const bool surface = hit.part == 1;
         const Skin& skin = surface ? stage_.relief->surface : stage_.relief->sides;
-        const Vec3f n = normalized(skin.normal(hit.primitive, hit.u, hit.v));
+        const Vec3f n = skin.normal(hit.primitive, hit.u, hit.v, ray.direction);
         const Color color = surface ? stage_.relief->color(at, n) : stage_.relief->side_color(at);
-        return {at, dot(n, ray.direction) < 0 ? n : -n, color, skin_lift_, surface ? 0.25f : 0.6f, 0};
+        return {at, n, color, skin_lift_, surface ? 0.25f : 0.6f, 0};
     }
 
     Surface mesh(const Ray& ray, const Vec3f& at, const RayScene::Hit& hit) const {
-        const Vec3f n = normalized(stage_.meshes[hit.part - 1].normal(hit.primitive, hit.u, hit.v));
-        return {at, dot(n, ray.direction) < 0 ? n : -n, steel, skin_lift_, 0.5f, 0.25f};
+        const Vec3f n = stage_.meshes[hit.part - 1].normal(hit.primitive, hit.u, hit.v, ray.direction);
+        return {at, n, steel, skin_lift_, 0.5f, 0.25f};
     }
 
     /// The share of light that comes along a ray, through meshes too.
