@@ -126,7 +126,7 @@ void set_period(const Scene& scene, State& state) {
 
 Simulation::Impl::Impl(const Scene& s, const SimulationOptions& o, const PositionScale& scale, const InitialState& sizes, double largest_ever)
     : scene(s), options(o), threads(o.threads), state(o.device), search(o.device), stage(stages(o.device)),
-      law(contact_law(s.contact.law)), old_grains(o.device), old_walls(o.device), found(o.device), old_index(o.device),
+      law(contact_law(s.contact.law)), old_grains(o.device), old_walls(o.device), found(o.device), old_index(o.device), rows(o.device),
       spheres(o.device) {
     const std::size_t n = sizes.size(), nm = scene.materials.size();
     state.particles.scale = scale;
