@@ -155,7 +155,7 @@ std::vector<Newcomer> Simulation::Impl::arrive() {
         if (state.size()) there = stage.residents(state, {region->bounds.lower - scale.origin, region->bounds.upper - scale.origin});
         for (const Newcomer& n : all) there.push_back({n.position, static_cast<std::int32_t>(std::llrint(n.radius / scale.unit))});
         obstacles.update(time());
-        Vacancy vacancy(*region, there, obstacles, state, largest_radius, feeder.state().waiting.size());
+        Vacancy vacancy(*region, there, obstacles, state, largest_radius, feeder.line_up(*region));
         const auto come = feeder.insert(*region, vacancy, scale);
         all.insert(all.end(), come.begin(), come.end());
     }

@@ -70,19 +70,18 @@ bool Feeder::draw(std::uint64_t step) {
     return state_.inserted < state_.drawn;
 }
 
-/// No more than could ever find a place at once: what waits far behind costs nothing.
-void Feeder::hand_over(double inlet_volume) {
+std::size_t Feeder::line_up(const InletRegion& region) {
     double volume = 0;
     for (const std::uint64_t number : state_.waiting) volume += sphere_volume(radius_(number));
-    while (state_.tried < state_.drawn && (state_.waiting.empty() || volume < most_fraction * inlet_volume)) {
+    while (state_.tried < state_.drawn && (state_.waiting.empty() || volume < most_fraction * region.volume)) {
         volume += sphere_volume(radius_(state_.tried));
         state_.waiting.push_back(state_.tried++);
     }
+    return state_.waiting.size();
 }
 
 /// Largest first, which fills a region better; places depend on the counter of attempts alone.
 std::vector<Newcomer> Feeder::insert(const InletRegion& region, Vacancy& vacancy, const PositionScale& scale) {
-    hand_over(region.volume);
     std::vector<std::pair<double, std::uint64_t>> order;
     for (const std::uint64_t number : state_.waiting) order.emplace_back(-radius_(number), number);
     std::sort(order.begin(), order.end());

@@ -51,7 +51,9 @@ public:
     std::uint64_t next_step(std::uint64_t now) const;
     /// Brings what is due up to date; true where particles look for a place.
     bool draw(std::uint64_t step);
-    /// Puts as many of the waiting as find a place.
+    /// How many insert() looks for a place for: no more than could ever find one at once, so what waits far behind costs nothing.
+    std::size_t line_up(const InletRegion&);
+    /// Puts as many of them as find a place.
     std::vector<Newcomer> insert(const InletRegion&, Vacancy&, const PositionScale&);
     /// For a run that ends at a step.
     StreamForecast forecast(std::uint64_t last_step) const;
@@ -63,7 +65,6 @@ private:
     /// May one more particle, of this mass, come?
     bool is_due(double elapsed, double mass) const;
     bool over(std::uint64_t step) const;
-    void hand_over(double inlet_volume);
     bool find_place(const InletRegion&, Vacancy&, const PositionScale&, double radius, Vec3l& place);
     Vec3f velocity(std::uint64_t number) const;
 
