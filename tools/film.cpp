@@ -11,6 +11,7 @@
 #include <csignal>
 #include <cstdlib>
 #include <sstream>
+#include <system_error>
 #include <vector>
 
 #include <fmt/format.h>

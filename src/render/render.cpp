@@ -87,7 +87,10 @@ struct Renderer::Impl {
     mutable std::optional<Subject> shared_subject;  ///< these two are made when first needed
     mutable std::optional<Setting> shared;
 
-    Impl(const Scene& s, const RenderSettings& r) : scene(s), settings(r), surroundings((check(r), s)) {}
+    Impl(const Scene& s, const RenderSettings& r) : scene(s), settings(r), surroundings((check(r), s)) {
+        scene.terrain.reset();  // held by the surroundings
+        scene.meshes.clear();
+    }
 
     std::optional<Box> mesh_bounds(double time) const {
         if (!surroundings.has_meshes()) return {};

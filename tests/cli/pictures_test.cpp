@@ -1,5 +1,8 @@
 // grainray render as film and sheet, grainray deposit: files that appear, what is said, mistakes.
+#include <algorithm>
+#include <cmath>
 #include <cstdlib>
+#include <sstream>
 
 #include "grainray/output.hpp"
 #include "process.hpp"

@@ -1,5 +1,6 @@
 // Depth maps, profiles and run-out of arrangements whose answers are known.
 #include <gtest/gtest.h>
+#include <map>
 #include <numbers>
 #include <numeric>
 
