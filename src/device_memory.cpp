@@ -42,8 +42,9 @@ double sum(const std::vector<MemoryPart>& parts) {
 
 }  // namespace
 
-std::vector<MemoryPart> forecast_device_memory(const Scene& scene, const std::vector<double>& radii, const std::string& backend, double triangles, double nodes) {
-    const double n = static_cast<double>(radii.size()), slots = n * planned_entries * slot_share + boulder_slots(radii);
+std::vector<MemoryPart> forecast_device_memory(const Scene& scene, double n, const std::vector<double>& radii, const std::string& backend,
+                                               double triangles, double nodes) {
+    const double slots = n * planned_entries * slot_share + boulder_slots(radii);
     const bool periodic = scene.domain.periodic[0] || scene.domain.periodic[1] || scene.domain.periodic[2];
     const double planes = scene.planes.empty() ? 1 : 2;  // list and the one before
     const std::vector<MemoryPart> always{{"particles", n * (particle + margin)},

@@ -230,11 +230,11 @@ void inspect_device(const Scene& scene, const InitialState& s, const SimulationO
         triangles += static_cast<double>(r.triangles);
     }
     if (scene.terrain) nodes = static_cast<double>(load_ground(scene).heights.size());
-    std::vector<double> radii = s.radii;
-    const double mean = s.size() ? std::accumulate(radii.begin(), radii.end(), 0.0) / static_cast<double>(radii.size()) : 1;
-    radii.resize(std::max(radii.size(), static_cast<std::size_t>(p.most_particles)), mean);  // those to come are taken for usual ones
-    p.device = forecast_device_memory(scene, radii, options.backend, triangles, nodes);
-    if (const auto text = device_refusal(p.device_bytes(), static_cast<double>(cuda_free_bytes()), static_cast<double>(radii.size()))) refuse(p, *text);
+    p.device = forecast_device_memory(scene, p.most_particles, s.radii, options.backend, triangles, nodes);
+    const auto text = device_refusal(p.device_bytes(), static_cast<double>(cuda_free_bytes()), p.most_particles);
+    if (!text) return;
+    if (scene.streams.empty() || scene.removals.empty()) refuse(p, *text);
+    else warn(p, *text + "; the forecast counts those that will be taken out");
 }
 
 std::optional<std::string> device_refusal(double needed, double free, double particles) {

@@ -11,7 +11,7 @@ using namespace grainray;
 namespace {
 
 double forecast(const Scene& scene, const std::vector<double>& radii, const std::string& backend = "cells", double triangles = 0, double nodes = 0) {
-    const auto parts = forecast_device_memory(scene, radii, backend, triangles, nodes);
+    const auto parts = forecast_device_memory(scene, static_cast<double>(radii.size()), radii, backend, triangles, nodes);
     return std::accumulate(parts.begin(), parts.end(), 0.0, [](double sum, const MemoryPart& part) { return sum + part.bytes; });
 }
 
