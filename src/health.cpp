@@ -1,9 +1,11 @@
 // The exact state of a run: checkpoint, hash, and whether it still makes sense.
-#include <algorithm>
-#include <limits>
-#include <cstdio>
-#include <numeric>
+#include <tbb/parallel_sort.h>
 
+#include <algorithm>
+#include <cstdio>
+#include <limits>
+
+#include "exec/cpu.hpp"
 #include "mix.hpp"
 #include "observe.hpp"
 
@@ -63,36 +65,42 @@ Checkpoint Simulation::checkpoint() const {
     c.scene = impl_->scene.source;
     c.state_hash = state_hash();
     impl_->keep_exchanges(c);
-    std::vector<std::uint32_t> order(n);
-    std::iota(order.begin(), order.end(), 0u);
-    std::sort(order.begin(), order.end(), [&](auto a, auto b) { return snap.id[a] < snap.id[b]; });
-    for (const std::uint32_t i : order) {
-        c.id.push_back(snap.id[i]);
-        c.material.push_back(snap.body[i].material);
-        c.position.push_back(snap.position(i));
-        c.radius.push_back(static_cast<float>(snap.radius(i)));
-        c.mass.push_back(snap.body[i].mass);
-        c.radius_units.push_back(snap.near[i].radius);
-        c.velocity.push_back(snap.body[i].velocity);
-        c.velocity_remainder.push_back(snap.remainder[i]);
-        c.angular_velocity.push_back(snap.body[i].spin);
-    }
+    const std::vector<std::uint32_t> order = places_by_id(snap.id);
+    c.id.resize(n);
+    c.material.resize(n);
+    c.position.resize(n);
+    c.radius.resize(n);
+    c.mass.resize(n);
+    c.radius_units.resize(n);
+    for (auto* v : {&c.velocity, &c.velocity_remainder, &c.angular_velocity}) v->resize(n);
+    cpu::for_each(n, [&](std::size_t k) {
+        const std::uint32_t i = order[k];
+        c.id[k] = snap.id[i];
+        c.material[k] = snap.body[i].material;
+        c.position[k] = snap.position(i);
+        c.radius[k] = static_cast<float>(snap.radius(i));
+        c.mass[k] = snap.body[i].mass;
+        c.radius_units[k] = snap.near[i].radius;
+        c.velocity[k] = snap.body[i].velocity;
+        c.velocity_remainder[k] = snap.remainder[i];
+        c.angular_velocity[k] = snap.body[i].spin;
+    });
     struct Entry {
         std::uint32_t a, b;
         Vec3f h;
     };
     std::vector<Entry> pairs, walls;
-    snap.for_each_contact([&](const TouchingContact& t) {
-        if (t.history == Vec3f{}) return;
-        const std::uint32_t a = snap.id[t.i];
-        if (t.wall) walls.push_back({a, t.j, t.history});
-        else if (const std::uint32_t b = snap.id[t.j]; a > b) pairs.push_back({a, b, t.history});
-        else pairs.push_back({b, a, -t.history});
+    snap.for_each_history([&](std::uint32_t i, std::uint32_t j, bool wall, const Vec3f& history) {
+        if (history == Vec3f{}) return;
+        const std::uint32_t a = snap.id[i];
+        if (wall) walls.push_back({a, j, history});
+        else if (const std::uint32_t b = snap.id[j]; a > b) pairs.push_back({a, b, history});
+        else pairs.push_back({b, a, -history});
     });
     const auto before = [](const Entry& x, const Entry& y) { return x.a != y.a ? x.a < y.a : x.b < y.b; };
     add_facets(snap, c);
-    std::sort(pairs.begin(), pairs.end(), before);
-    std::sort(walls.begin(), walls.end(), before);
+    tbb::parallel_sort(pairs, before);
+    tbb::parallel_sort(walls, before);
     for (const Entry& e : pairs) {
         c.contact_a.push_back(e.a);
         c.contact_b.push_back(e.b);

@@ -24,6 +24,34 @@ Snapshot::Snapshot(const State& s, ContactLaw contact_law)
 
 Vec3l Snapshot::position(std::size_t i) const { return into_box(join(near[i], far[i]), period, period_lower); }
 
+std::vector<std::uint32_t> places_by_id(const std::vector<std::uint32_t>& id) {
+    const std::size_t ids = id.empty() ? 0 : *std::max_element(id.begin(), id.end()) + std::size_t{1};
+    std::vector<std::uint32_t> places;
+    if (ids > 8 * id.size()) {  // most of those there ever were have gone
+        places.resize(id.size());
+        std::iota(places.begin(), places.end(), 0u);
+        std::sort(places.begin(), places.end(), [&](auto a, auto b) { return id[a] < id[b]; });
+        return places;
+    }
+    places.assign(ids, ~0u);
+    for (std::size_t i = 0; i < id.size(); ++i) places[id[i]] = static_cast<std::uint32_t>(i);
+    std::erase(places, ~0u);  // of those that have gone
+    return places;
+}
+
+void Snapshot::for_each_history(const std::function<void(std::uint32_t, std::uint32_t, bool, const Vec3f&)>& visit) const {
+    for (std::uint32_t i = 0; i < size(); ++i) {
+        for (std::uint64_t e = grain_offsets[i]; e < grain_offsets[i + 1]; ++e) {
+            const std::uint32_t j = grain_partners[e];
+            if (i / block == j / block || j <= i) visit(i, j, false, grain_history[e]);  // else it stands in both rows
+        }
+        for (std::uint64_t e = wall_offsets[i]; e < wall_offsets[i + 1]; ++e) {
+            const PlaneNow& plane = planes[wall_partners[e]];
+            if (radius(i) - dot(plane.normal, scale.local(join(near[i], far[i])) - plane.point) > 0) visit(i, wall_partners[e], true, wall_history[e]);
+        }
+    }
+}
+
 namespace {
 
 /// One pass over the lists; `law` has a step of 0, so that forces are as the histories stand.
@@ -117,9 +145,7 @@ Frame Simulation::frame() const {
     const auto id = p.id.to_host();
     const auto coordination = fields.coordination.to_host();
     const auto force = fields.force.to_host();
-    std::vector<std::uint32_t> order(n);
-    std::iota(order.begin(), order.end(), 0u);
-    std::sort(order.begin(), order.end(), [&](auto a, auto b) { return id[a] < id[b]; });
+    const std::vector<std::uint32_t> order = places_by_id(id);
     for (auto* v : {&f.id, &f.material, &f.coordination}) v->resize(n);
     for (auto* v : {&f.radius, &f.mass, &f.contact_force}) v->resize(n);
     for (auto* v : {&f.velocity, &f.angular_velocity}) v->resize(n);

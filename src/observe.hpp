@@ -65,11 +65,16 @@ struct Snapshot {
     double radius(std::size_t i) const { return near[i].radius * scale.unit; }
     /// Every touching contact once, in storage order.
     void for_each_contact(const std::function<void(const TouchingContact&)>&) const;
+    /// Every touching contact once, without its force: visit(i, j, wall, history).
+    void for_each_history(const std::function<void(std::uint32_t, std::uint32_t, bool, const Vec3f&)>&) const;
     /// Every particle on every mesh or terrain it touches, in storage order.
     void for_each_facet_contact(const std::function<void(const FacetTouch&)>&) const;
     /// What the next step needs to know of the last one.
     void for_each_facet_memory(const std::function<void(std::uint32_t i, std::uint32_t facet, const FacetState&)>&) const;
 };
+
+/// Places of the particles by ascending id.
+std::vector<std::uint32_t> places_by_id(const std::vector<std::uint32_t>& id);
 
 /// Into a checkpoint, and out of it as rows of an old list.
 void add_facets(const Snapshot&, Checkpoint&);

@@ -1,5 +1,6 @@
 // A time step. Impl::step() is the table of contents of the whole program.
 #include "boundary/build.hpp"
+#include "device_memory.hpp"
 #include "observe.hpp"
 
 #include <algorithm>
@@ -87,17 +88,41 @@ void Simulation::Impl::update_lists() {
 /// Sort, margins, search, then the histories of the old lists into the new ones.
 void Simulation::Impl::make_lists() {
     stage.sort(state, old_grains, rows, old_index);
-    stage.margins(state, constants, margin_rule, spheres);
-    const float* s = spheres.data();
-    search.find(Points{s, s + 1, s + 2, 4, s + 3, 4, 0, state.particles.id.data(), state.size()}, found);
+    find_pairs();
     stage.list_pairs(state, found, old_grains, old_index);
     stage.list_walls(state, constants, old_walls, old_index);
     if (state.facets.count()) stage.list_facets(state, constants, old_index);
 
     detail::copy(options.device, state.flags.data(), Device::cpu, std::array{~0u, ~0u}.data(), 2 * sizeof(std::uint32_t));
+    release_scratch();
     state.age.steps = 0;
     state.age.outdated = false;
     ++rebuilds;
+}
+
+/// On CUDA a list that would take more memory than is planned for is made again with smaller margins.
+void Simulation::Impl::find_pairs() {
+    const bool limited = options.device == Device::cuda;
+    const auto most = static_cast<std::size_t>(planned_entries * static_cast<double>(state.size()));
+    for (MarginRule rule = margin_rule;;) {
+        stage.margins(state, constants, rule, spheres);
+        const float* s = spheres.data();
+        search.find(Points{s, s + 1, s + 2, 4, s + 3, 4, 0, state.particles.id.data(), state.size()}, found);
+        if (!limited || found.neighbors.size() <= most || state.age.limit <= IntervalTuner::shortest) break;
+        rule.interval = std::max<float>(IntervalTuner::shortest, 0.7f * static_cast<float>(state.age.limit));
+        rule.least *= 0.7f;
+        tuner.shorten(rule.interval, rule.least);
+    }
+    if (!limited) return;
+    spheres.release();
+    search.release();
+}
+
+void Simulation::Impl::release_scratch() {
+    if (options.device != Device::cuda) return;
+    old_grains.release();
+    old_walls.release();
+    old_index.release();
 }
 
 void Simulation::Impl::place_planes(std::uint32_t steps) {

@@ -77,6 +77,8 @@ struct Simulation::Impl {
     std::uint32_t fused_steps(std::uint64_t most);  ///< what step() does, several times, in the device's own time; returns how often
     void update_lists();
     void make_lists();
+    void find_pairs();                       ///< margins and search
+    void release_scratch();                  ///< on CUDA: what only making a list needs
     void place_planes(std::uint32_t steps = 1);     ///< where they are at time(), and at the steps after it
     void place_meshes(std::uint32_t steps = 1);     ///< the same
     void tune_interval();

@@ -16,6 +16,13 @@ struct ContactList {
     Array<std::uint32_t> partners;
     Array<Vec3f> history;
     Array<std::uint8_t> touched;  ///< 1 where a history may be other than zero; the CPU's pair loop alone
+    void release() {
+        offsets.release();
+        counts.release();
+        partners.release();
+        history.release();
+        touched.release();
+    }
     std::size_t bytes() const { return offsets.bytes() + counts.bytes() + partners.bytes() + history.bytes() + touched.bytes(); }
 };
 
@@ -43,7 +50,7 @@ struct State {
 
     Particles particles;
     Array<Wrench> wrench;   ///< sums of the step under way; the integrator leaves zeros. Not used by the fused step
-    Array<Near> next_near;  ///< fused step: what a step writes while others still read `particles`
+    Array<Near> next_near;  ///< fused step: what a step writes while others still read `particles`; held during a batch
     Array<Far> next_far;    ///< the same, where an axis is periodic
     Array<Body> next_body;
     Array<Near> built;      ///< position at the last build; `radius` holds the margin, units

@@ -101,7 +101,7 @@ nlohmann::ordered_json traffic_json(const Simulation& simulation, const Measured
             {"share_of_copy", bytes / seconds / copy}};
 }
 
-nlohmann::ordered_json report(const Simulation& simulation, const Options& options, const Measured& m) {
+nlohmann::ordered_json report(const Simulation& simulation, const Options& options, const Measured& m, double device_forecast) {
     nlohmann::ordered_json json;
     const double n = static_cast<double>(std::max<std::size_t>(simulation.size(), 1));
     json["version"] = GRAINRAY_VERSION;
@@ -119,6 +119,7 @@ nlohmann::ordered_json report(const Simulation& simulation, const Options& optio
     json["peak_rss_bytes"] = peak_resident_bytes();
     if (simulation.device() == Device::cuda) {
         json["gpu"] = cuda_status();
+        json["device_forecast_bytes_per_particle"] = device_forecast / n;
         json["device_peak_bytes_per_particle"] = static_cast<double>(cuda_peak_bytes()) / n;
     }
     return json;
@@ -142,8 +143,8 @@ void print_table(const nlohmann::ordered_json& json, const Measured& m) {
                json["bytes_per_particle"].get<double>(), bytes_text(json["peak_rss_bytes"].get<double>()));
     if (!json.contains("traffic")) return;
     const auto& t = json["traffic"];
-    fmt::print("{}: {:.0f} bytes a particle at the peak; a fused step must move {:.0f} bytes a particle: {:.2f} TB/s, {:.0f}% of the {:.2f} TB/s of a copy\n",
-               json["gpu"].get<std::string>(), json["device_peak_bytes_per_particle"].get<double>(),
+    fmt::print("{}: {:.0f} bytes a particle at the peak, {:.0f} forecast; a fused step must move {:.0f} bytes a particle: {:.2f} TB/s, {:.0f}% of the {:.2f} TB/s of a copy\n",
+               json["gpu"].get<std::string>(), json["device_peak_bytes_per_particle"].get<double>(), json["device_forecast_bytes_per_particle"].get<double>(),
                t["fused_bytes_per_step"].get<double>() / json["particles"].get<double>(), t["fused_bytes_per_second"].get<double>() / 1e12,
                100 * t["share_of_copy"].get<double>(), t["copy_bytes_per_second"].get<double>() / 1e12);
 }
@@ -159,11 +160,13 @@ int bench_step(const Options& options) {
     const Scene scene = scene_for(options);
     const Engine engine = choose_engine(options.engine, scene);
     const InitialState initial = place_checked(scene);
+    Preflight preflight = inspect(scene, initial);
+    inspect_device(scene, initial, engine.options, preflight);
     const Stopwatch whole;
     Simulation simulation(scene, initial, engine.options);
     const Measured m = measure(simulation, warmup, steps);
     const auto start_and_steps = whole.json();
-    auto json = report(simulation, options, m);
+    auto json = report(simulation, options, m, preflight.device_bytes());
     json["start_and_steps"] = start_and_steps;
     if (simulation.device() == Device::cuda) json["traffic"] = traffic_json(simulation, m, copy_bandwidth());
     print_table(json, m);

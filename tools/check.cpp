@@ -107,6 +107,13 @@ void print_steps(const Scene& scene, const std::vector<CriticalStep>& steps) {
     }
 }
 
+void print_device_memory(const Preflight& p, double particles) {
+    if (p.device.empty()) return;
+    fmt::print("GPU memory   {} at most, {:.0f} bytes a particle; {} are free\n", bytes_text(p.device_bytes()), p.device_bytes() / particles,
+               bytes_text(static_cast<double>(cuda_free_bytes())));
+    for (const MemoryPart& part : p.device) fmt::print("  {:<24} {:>10}  {:>5.0f} bytes a particle\n", part.name, bytes_text(part.bytes), part.bytes / particles);
+}
+
 /// Runs the scene itself for a moment.
 void print_probe(const Scene& scene, const InitialState& s, const Preflight& p, const Engine& engine) {
     Simulation simulation(scene, s, engine.options);
@@ -141,6 +148,7 @@ int check(const Options& options) {
     const InitialState particles = place_checked(scene);
     Preflight preflight = inspect(scene, particles);
     inspect_disk(".", preflight);
+    inspect_device(scene, particles, engine.options, preflight);
     fmt::print("scene        {}{}\n", options.scene.string(), scene.title.empty() ? "" : ": " + scene.title);
     print_particles(scene, particles);
     print_exchanges(scene, preflight);
@@ -148,6 +156,7 @@ int check(const Options& options) {
     print_overlaps(scene, preflight.overlaps);
     print_surface_overlap(preflight.overlaps);
     print_steps(scene, preflight.steps);
+    print_device_memory(preflight, std::max(preflight.most_particles, 1.0));
     if (!preflight.first_refusal()) print_probe(scene, particles, preflight, engine);
     for (const Finding& finding : preflight.findings) fmt::print("{:<12} {}\n", finding.weight == Weight::refused ? "refused" : finding.weight == Weight::note ? "note" : "warning", finding.text);
     if (const Finding* refusal = preflight.first_refusal()) {

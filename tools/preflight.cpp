@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <numeric>
 
 #include <fmt/format.h>
 
@@ -214,6 +215,33 @@ Preflight inspect(const Scene& scene, const InitialState& s, const RunRange& ran
     }
     inspect_memory(p);
     return p;
+}
+
+double Preflight::device_bytes() const {
+    return std::accumulate(device.begin(), device.end(), 0.0, [](double sum, const MemoryPart& part) { return sum + part.bytes; });
+}
+
+void inspect_device(const Scene& scene, const InitialState& s, const SimulationOptions& options, Preflight& p) {
+    if (options.device != Device::cuda || !(p.most_particles > 0)) return;
+    double triangles = 0, nodes = 0;
+    for (const Mesh& mesh : scene.meshes) {
+        MeshReport r;
+        load_mesh(scene, mesh, &r);
+        triangles += static_cast<double>(r.triangles);
+    }
+    if (scene.terrain) nodes = static_cast<double>(load_ground(scene).heights.size());
+    p.device = forecast_device_memory(scene, p.most_particles, s.radii, options.backend, triangles, nodes);
+    const auto text = device_refusal(p.device_bytes(), static_cast<double>(cuda_free_bytes()), p.most_particles);
+    if (!text) return;
+    if (scene.streams.empty() || scene.removals.empty()) refuse(p, *text);
+    else warn(p, *text + "; the forecast counts those that will be taken out");
+}
+
+std::optional<std::string> device_refusal(double needed, double free, double particles) {
+    if (needed <= free) return std::nullopt;
+    return fmt::format("the run is forecast to need {} of GPU memory, {:.0f} bytes a particle, and {} are free; use at most {} particles, end what else uses "
+                       "the GPU, or give --device cpu",
+                       bytes_text(needed), needed / particles, bytes_text(free), short_number(particles * free / needed));
 }
 
 void insist(const Preflight& p, bool quiet) {

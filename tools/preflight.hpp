@@ -29,6 +29,8 @@ struct Preflight {
     std::vector<StreamForecast> streams;  ///< of the scene's, until the last step
     double most_particles = 0;            ///< at the end, if none is taken out
     Forecast needs;
+    std::vector<MemoryPart> device;  ///< GPU memory by part; empty on the CPU
+    double device_bytes() const;     ///< all of it
     std::vector<Finding> findings;
     const Finding* first_refusal() const;
     std::size_t warnings() const;
@@ -44,6 +46,10 @@ struct RunRange {
     std::uint64_t last(const Scene&) const;  ///< step it ends at, at least the first
 };
 Preflight inspect(const Scene&, const InitialState&, const RunRange& = {});
+/// Forecasts the GPU memory of a run with `options`, and refuses one that does not fit.
+void inspect_device(const Scene&, const InitialState&, const SimulationOptions&, Preflight&);
+/// One sentence with the figure and the remedy where `needed` bytes for so many particles are more than are free.
+std::optional<std::string> device_refusal(double needed, double free, double particles);
 /// Warnings and notes to stderr; throws InputError for what is refused.
 void insist(const Preflight&, bool quiet);
 /// Adds a warning where the output is forecast to fill the disk of `folder`.

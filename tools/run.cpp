@@ -69,6 +69,8 @@ private:
         Preflight preflight = inspect(scene_, particles, range_);
         if (checkpoint) inspect_restart(scene_, *checkpoint, range_, preflight);
         inspect_disk(folder_.path(), preflight);
+        inspect_device(scene_, particles, engine_.options, preflight);
+        facts_.device_forecast_bytes = preflight.device_bytes();
         insist(preflight, options_.quiet);
         if (!checkpoint) return {scene_, particles, engine_.options};
         return {scene_, *checkpoint, engine_.options};

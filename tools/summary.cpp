@@ -1,5 +1,7 @@
 #include "summary.hpp"
 
+#include <cmath>
+
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -78,6 +80,8 @@ std::string summary_text(const Simulation& simulation, const Scene& scene, const
     json["search"] = search_json(simulation.search());
     json["profile"] = profile_json(simulation.profile());
     json["memory_bytes"] = simulation.memory_bytes();
+    if (simulation.device() == Device::cuda)
+        json["device_memory"] = {{"forecast_bytes", std::llround(facts.device_forecast_bytes)}, {"peak_bytes", cuda_peak_bytes()}};
     json["energy"] = {{"kinetic", now.kinetic_translation + now.kinetic_rotation}, {"potential", now.potential}};
     json["max_overlap_ratio"] = now.max_overlap_ratio;
     json["state_hash"] = hash_text(simulation.state_hash());

@@ -15,6 +15,7 @@ struct RunFacts {
     std::uint64_t first_step = 0;
     double wall_seconds = 0;  ///< of stepping and output; making the simulation does not count
     int threads = 0;
+    double device_forecast_bytes = 0;  ///< of GPU memory at its peak
 };
 
 std::string summary_text(const Simulation&, const Scene&, const RunFacts&);

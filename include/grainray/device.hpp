@@ -22,6 +22,8 @@ bool cuda_available();
 std::string cuda_status();
 /// Most bytes that this process has held on the GPU at once.
 std::size_t cuda_peak_bytes();
+/// Bytes that are free on the GPU now; 0 without one.
+std::size_t cuda_free_bytes();
 
 /// A GPU as the driver shows it.
 struct Gpu {

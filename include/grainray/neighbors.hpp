@@ -84,6 +84,8 @@ public:
     const SearchOptions& options() const;
     void set_block(std::uint32_t block);
     std::size_t memory_bytes() const;
+    /// Gives back what every find() makes anew; the next one costs as much more as allocating does.
+    void release();
 
 private:
     struct Impl;

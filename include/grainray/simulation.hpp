@@ -138,6 +138,16 @@ private:
     std::unique_ptr<Impl> impl_;
 };
 
+/// A share of the device memory that a simulation takes, bytes.
+struct MemoryPart {
+    std::string name;
+    double bytes = 0;
+};
+/// Most device memory that a simulation on CUDA will have held at once, by part; src/device_memory.cpp has the formula.
+/// particles: at most; radii: of those that are known; backend: of the search; triangles: of all meshes; nodes: of the terrain.
+std::vector<MemoryPart> forecast_device_memory(const Scene&, double particles, const std::vector<double>& radii, const std::string& backend,
+                                               double triangles, double nodes);
+
 /// Result of `grainray check`.
 struct CriticalStep {
     std::string contact;      ///< "grain-grain normal", "grain-floor tangential", ...

@@ -149,6 +149,7 @@ public:
 private:
     static constexpr std::size_t chunk = 256;
     struct Row {
+        static constexpr bool shared = false;
         const std::uint32_t* entries;  ///< count, then what was found
         template <class Emit>
         void for_each(const Emit& emit) const {

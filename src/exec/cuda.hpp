@@ -30,6 +30,22 @@ void for_each(std::size_t n, const F& f, std::size_t = 0) {
     check(cudaGetLastError(), "kernel launch");
 }
 
+template <class F>
+__global__ void for_each_in_blocks_kernel(const std::uint32_t* count, F f) {
+    const std::uint32_t items = *count, blocks_each = items && items < gridDim.x ? gridDim.x / items : 1;
+    for (std::size_t b = blockIdx.x; b < std::size_t{items} * blocks_each; b += gridDim.x)
+        f(b / blocks_each, static_cast<std::uint32_t>(b % blocks_each) * blockDim.x + threadIdx.x, blocks_each * blockDim.x);
+}
+
+/// f(i, share, shares) by many threads for each i below *count, a number on the device that the host need not know: by those of
+/// a block, or of several blocks where there are few i.
+template <class F>
+void for_each_in_blocks(const std::uint32_t* count, const F& f) {
+    constexpr unsigned blocks = 1024, threads = 128;
+    for_each_in_blocks_kernel<<<blocks, threads>>>(count, f);
+    check(cudaGetLastError(), "kernel launch");
+}
+
 /// Scratch memory of the primitives, kept from call to call.
 inline void* scratch(std::size_t bytes) {
     static Array<char> memory(Device::cuda);
@@ -134,11 +150,12 @@ GR_HD void atomic_add_together(std::int64_t* to, const std::array<std::int64_t, 
 }
 
 /// What each work item of a Finder (neighbors/list.hpp) finds, twice. The first finds of an item are kept in slots; items
-/// that found more are searched again.
+/// that found more are searched again. A wide item is looked at by many threads, which share its row.
 template <class Finder>
 class Found {
 public:
     struct Row {
+        static constexpr bool shared = false;
         Finder finder;
         View<std::uint32_t> slots;  ///< slot s of item k at s * items + k
         View<std::uint8_t> counts;  ///< 255: more than the slots hold
@@ -163,26 +180,74 @@ public:
         }
     };
 
-    Found(const Finder& finder, std::size_t items) : finder_(finder), slots_(Device::cuda, items * slots_each), counts_(Device::cuda, items) {}
+    /// What one thread finds of a wide item.
+    struct Share {
+        static constexpr bool shared = true;
+        Finder finder;
+        std::size_t k;
+        std::uint32_t share, shares;
+
+        template <class Emit>
+        GR_HD void for_each(const Emit& emit) const {
+            finder.find_share(k, share, shares, [&](std::uint32_t j, bool hit) { if (hit) emit(j); });
+        }
+    };
+
+    Found(const Finder& finder, std::size_t items)
+        : finder_(finder), slots_(Device::cuda, items * slots_each), counts_(Device::cuda, items), wide_(Device::cuda, some_wide(finder) ? items + 1 : 0) {}
     template <class Visit>
-    void search(const Visit& visit) { each(visit, true); }
+    void search(const Visit& visit) {
+        if (some_wide(finder_)) list_wide();
+        each(visit, true);
+    }
     template <class Visit>
     void again(const Visit& visit) { each(visit, false); }
 
     static constexpr std::uint32_t slots_each = 24;
+    static constexpr bool knows_wide = requires(const Finder& f) { f.wide(std::size_t{}); };
+    static bool some_wide([[maybe_unused]] const Finder& finder) {
+        if constexpr (knows_wide) return finder.some_wide;
+        else return false;
+    }
+    GR_HD static bool is_wide([[maybe_unused]] const Finder& finder, [[maybe_unused]] std::size_t k) {
+        if constexpr (knows_wide) return finder.wide(k);
+        else return false;
+    }
 
+    /// How many items are wide, then which.
+    void list_wide() {
+        const Finder finder = finder_;
+        const auto wide = wide_.view();
+        cuda::for_each(1, [=] GR_HD(std::size_t) { wide[0] = 0; });
+        cuda::for_each(counts_.size(), [=] GR_HD(std::size_t k) {
+            if (is_wide(finder, k)) wide[1 + atomic_add(&wide[0], 1u)] = static_cast<std::uint32_t>(k);
+        });
+    }
     template <class Visit>
     void each(const Visit& visit, bool first_time) {
         const Finder finder = finder_;
         const auto slots = slots_.view();
         const auto counts = counts_.view();
-        cuda::for_each(counts.size, [=] GR_HD(std::size_t k) { visit(k, Row{finder, slots, counts, k, first_time}); });
+        cuda::for_each(counts.size, [=] GR_HD(std::size_t k) {
+            if (!is_wide(finder, k)) visit(k, Row{finder, slots, counts, k, first_time});
+        });
+        if constexpr (knows_wide)
+            if (some_wide(finder_)) each_wide(visit);
+    }
+    template <class Visit>
+    void each_wide(const Visit& visit) {
+        const Finder finder = finder_;
+        const auto wide = wide_.view();
+        for_each_in_blocks(wide.data, [=] GR_HD(std::size_t w, std::uint32_t share, std::uint32_t shares) {
+            visit(wide[1 + w], Share{finder, wide[1 + w], share, shares});
+        });
     }
 
 private:
     Finder finder_;
     Array<std::uint32_t> slots_;
     Array<std::uint8_t> counts_;
+    Array<std::uint32_t> wide_;
 };
 
 inline void synchronize() { check(cudaDeviceSynchronize(), "synchronize"); }

@@ -22,6 +22,7 @@ constexpr std::size_t alignment = 64;  // a cache line, and an AVX-512 vector
 bool cuda_available() { return memory::cuda().available(); }
 std::string cuda_status() { return memory::cuda().status(); }
 std::size_t cuda_peak_bytes() { return memory::cuda().peak(); }
+std::size_t cuda_free_bytes() { return memory::cuda().free(); }
 CudaReport cuda_report() { return memory::cuda().report(); }
 
 namespace detail {
@@ -59,7 +60,7 @@ const memory::Cuda& memory::cuda() {
         [] { return std::string("this build has no CUDA: nvcc was not found when it was configured; install the CUDA toolkit and build again"); },
         [] { return CudaReport{}; },
         [](std::size_t) -> void* { throw InputError("device 'cuda' asked for, but " + cuda_status()); },
-        [](void*) noexcept {}, [](void*, const void*, std::size_t) {}, [](void*, std::size_t) {}, [] { return std::size_t{0}; }};
+        [](void*) noexcept {}, [](void*, const void*, std::size_t) {}, [](void*, std::size_t) {}, [] { return std::size_t{0}; }, [] { return std::size_t{0}; }};
     return absent;
 }
 #endif

@@ -63,6 +63,11 @@ const memory::Cuda& memory::cuda() {
             std::uint64_t bytes = 0;
             if (probe().available) grainray::cuda::check(cudaMemPoolGetAttribute(pool(), cudaMemPoolAttrUsedMemHigh, &bytes), "memory pool");
             return static_cast<std::size_t>(bytes);
+        },
+        [] {
+            std::size_t free = 0, total = 0;
+            if (probe().available) grainray::cuda::check(cudaMemGetInfo(&free, &total), "memory");
+            return free;
         }};
     return present;
 }

@@ -17,6 +17,7 @@ struct Cuda {
     void (*copy)(void*, const void*, std::size_t);
     void (*clear)(void*, std::size_t);
     std::size_t (*peak)();
+    std::size_t (*free)();
 };
 const Cuda& cuda();
 

@@ -81,30 +81,33 @@ void lay_out(NeighborList& found, const Carry& carry, ContactList& list) {
         atomic_max(&starts[i / slice_rows], std::uint64_t{count} * slice_rows);
     });
     list.partners.resize_discard(exclusive_scan(starts));
-    list.history.resize_discard(list.partners.size());
     const auto neighbors = found.neighbors.view();
-    const Rows rows(list);
+    const auto partners = list.partners.view();
     for_each(n, [=] GR_HD(std::size_t i) {
-        const std::uint32_t count = rows.counts[i];
+        const std::uint32_t count = counts[i];
         const std::uint32_t* const row = neighbors.data + offsets[i];
-        const std::uint64_t first = rows.entry(i, 0);
+        std::uint32_t* const first = partners.data + starts[i / slice_rows] + i % slice_rows;
         std::uint32_t front = 0, back = count;
         for (std::uint32_t start = 0; start < count; start += 32) {
             const std::uint32_t end = count - start < 32 ? count - start : 32;
             std::uint32_t touching = 0;
             for (std::uint32_t k = 0; k < end; ++k) touching |= std::uint32_t{carry.touches(i, row[start + k])} << k;
             for (std::uint32_t k = 0; k < end; ++k)
-                if (!(touching >> k & 1)) rows.partners[first + --back * slice_rows] = row[start + k];
-            for (std::uint32_t rest = touching; rest; rest &= rest - 1) {
-                const std::uint32_t j = row[start + lowest_bit(rest)];
-                const std::uint64_t to = first + front++ * slice_rows;
-                rows.partners[to] = j | live_bit;
-                rows.store(to, carry.history(i, j));
-            }
+                if (touching >> k & 1) first[front++ * slice_rows] = row[start + k] | live_bit;
+                else first[--back * slice_rows] = row[start + k];
         }
     });
     found.offsets.release();
     found.neighbors.release();
+    list.history.resize_discard(list.partners.size());  // not before: what was found has gone
+    const Rows rows(list);
+    for_each(n, [=] GR_HD(std::size_t i) {
+        for (std::uint32_t k = 0; k < rows.counts[i]; ++k) {
+            const std::uint64_t e = rows.entry(i, k);
+            if (!rows.live(e)) break;
+            rows.store(e, carry.history(i, rows.partner(e)));
+        }
+    });
 }
 
 /// Bit k: entry start + k of row i is live.

@@ -109,6 +109,9 @@ std::uint32_t fused(State& s, ContactLaw law, const StepConstants& constants, fl
     const bool stopped = stop != ~0u;
     const std::uint32_t done = stopped ? stop + 1 : steps;
     if ((steps - done) % 2) swap_state(s);  // the steps that returned at once wrote nothing
+    s.next_near.release();
+    s.next_body.release();
+    s.next_far.release();
     s.age.steps += done;
     s.age.outdated = stopped || s.age.steps >= s.age.limit;
     return done;

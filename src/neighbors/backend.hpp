@@ -32,6 +32,8 @@ public:
     virtual void pairs(const Packed& points, const Request&, NeighborList&) = 0;
     virtual void queries(const Packed& queries, const Packed& points, const Request&, NeighborList&) = 0;
     virtual std::size_t memory_bytes() const = 0;
+    /// Gives back what every search makes anew.
+    virtual void release() {}
     /// What a reader of its times should know; empty: nothing.
     virtual std::string note() const { return {}; }
 };

@@ -32,8 +32,16 @@ public:
         : interval_(interval > 0 ? interval : 24), skin_(skin > 0 ? skin : 0.03), interval_fixed_(interval > 0), skin_fixed_(skin > 0),
           candidate_share_(candidate_share) {}
 
+    static constexpr std::uint32_t shortest = 4, longest = 200;
+
     double interval() const { return interval_; }
     double skin() const { return skin_; }  ///< least margin, of the particle's radius
+
+    /// A list meant for more steps, or with a wider least margin, has become too large.
+    void shorten(double interval, double skin) {
+        if (!interval_fixed_) interval_ = most_ = std::min(interval_, interval);
+        if (!skin_fixed_) skin_ = std::clamp(skin, 0.01, skin_);
+    }
 
     void finished(const Life& life) {
         if (life.steps == 0 || life.entries == 0 || life.margin == 0) return;
@@ -62,13 +70,15 @@ private:
     static void smooth(double& mean, double value) { mean = mean > 0 ? 0.9 * mean + 0.1 * value : value; }
     static double towards(double gain, double cost) { return std::clamp(std::sqrt(gain / std::max(cost, 1e-30)), 0.8, 1.25); }
     void move(double interval_factor, double skin_factor) {
-        if (!interval_fixed_) interval_ = std::clamp(interval_ * interval_factor, 4.0, 200.0);
+        most_ = std::min<double>(1.05 * most_, longest);  // what was too large may fit again when motion calms down
+        if (!interval_fixed_) interval_ = std::clamp<double>(interval_ * interval_factor, shortest, std::max<double>(shortest, most_));
         if (!skin_fixed_) skin_ = std::clamp(skin_ * skin_factor, 0.01, 0.4);
     }
 
     double interval_, skin_;
     bool interval_fixed_, skin_fixed_;
     double candidate_share_, update_ = 0, entry_ = 0;
+    double most_ = longest;  ///< steps that fit lately
 };
 
 }  // namespace grainray

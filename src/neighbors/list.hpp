@@ -3,6 +3,10 @@
 // A Finder is copied to the device and gives
 //   index(k)        the point that work item k stands for (a locality-friendly order of the points)
 //   find(k, emit)   calls emit(j, hit) for candidates j, hit where index(k) owns the pair
+// and, where items may have far more candidates than others, so that CUDA lets a block of threads look at each of those,
+//   some_wide       there are such items
+//   wide(k)         item k is one
+//   find_share(k, share, shares, emit)   the part of find(k, emit) that is thread `share`'s
 #pragma once
 
 #include "exec/exec.hpp"
@@ -55,9 +59,9 @@ struct Count {
         std::uint32_t found = 0;
         row.for_each([&](std::uint32_t j) {
             ++found;
-            if (i / block != j / block) atomic_add(&counts[j], std::uint64_t{1});
+            if (block == 1 || i / block != j / block) atomic_add(&counts[j], std::uint64_t{1});
         });
-        own[i] = found;
+        if constexpr (!Row::shared) own[i] = found;  // else all entries of the row stand in the order in which they come
         if (found) atomic_add(&counts[i], std::uint64_t{found});
     }
 };
@@ -76,8 +80,9 @@ struct Fill {
         const std::uint32_t i = finder.index(k);
         std::uint64_t slot = offsets[i];
         row.for_each([&](std::uint32_t j) {
-            entries[slot++] = j;
-            if (i / block != j / block) entries[offsets[j] + atomic_add(&next[j], 1u)] = i;
+            if constexpr (Row::shared) entries[slot + atomic_add(&next[i], 1u)] = j;
+            else entries[slot++] = j;
+            if (block == 1 || i / block != j / block) entries[offsets[j] + atomic_add(&next[j], 1u)] = i;
         });
     }
 };

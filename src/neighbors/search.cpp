@@ -197,6 +197,14 @@ const std::string& NeighborSearch::reason() const { return impl_->reason; }
 const SearchOptions& NeighborSearch::options() const { return impl_->options; }
 void NeighborSearch::set_block(std::uint32_t block) { impl_->options.block = block; }
 
+void NeighborSearch::release() {
+    for (neighbors::Packed* packed : {&impl_->points, &impl_->queries}) {
+        packed->spheres.release();
+        packed->ids.release();
+    }
+    for (const auto& [name, backend] : impl_->made) backend->release();
+}
+
 std::size_t NeighborSearch::memory_bytes() const {
     std::size_t bytes = impl_->points.spheres.bytes() + impl_->points.ids.bytes();
     for (const auto& [name, backend] : impl_->made) bytes += backend->memory_bytes();

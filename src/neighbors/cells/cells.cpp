@@ -12,6 +12,14 @@ struct Sorted {
     View<const std::uint32_t> order;   ///< index of the point at each place
     View<const std::uint32_t> starts;  ///< buckets + 1: first place of each bucket
 
+    /// Candidates of one of `shares` threads that look at the surroundings of s together.
+    template <class Test, class Emit>
+    GR_HD void find_share(const neighbors::Sphere& s, float half_width, std::uint32_t share, std::uint32_t shares, const Test& test, const Emit& emit) const {
+        grid.for_each_run<true>(s, half_width, share, shares, [&](std::uint32_t first, std::uint32_t last) {
+            for (std::uint32_t p = starts[first], end = starts[last]; p < end; ++p) emit(order[p], test(p));
+        });
+    }
+
     template <class Test, class Emit>
     GR_HD void find(const neighbors::Sphere& s, float half_width, const Test& test, const Emit& emit) const {
         if constexpr (device == Device::cuda) return find_flat(s, half_width, test, emit);
@@ -50,6 +58,9 @@ struct Sorted {
     }
 };
 
+/// Mean reaches from which a point is wide: (2 * 3 + 1)^3 cells lie around it, 3^3 around most.
+constexpr float wide_reach = 3;
+
 template <bool periodic>
 GR_HD inline bool near(const neighbors::Sphere& a, const neighbors::Sphere& b, const Vec3f& period) {
     if constexpr (periodic) return neighbors::pair_test(a, b, period);
@@ -63,18 +74,32 @@ struct CellPairs {
     View<const neighbors::Sphere> spheres;  ///< the points in the order in which they are looked at
     View<const std::uint32_t> ids, indices; ///< no indices: the points' own order
     Vec3f period;
+    float wide_from;                        ///< reach from which a point is wide
+    bool some_wide;
+
+    /// Whether the pair with the point at place p is owned.
+    struct Owned {
+        const CellPairs& pairs;
+        neighbors::Sphere a;
+        std::uint32_t id;
+
+        GR_HD bool operator()(std::uint32_t p) const {
+            const neighbors::Sphere& b = pairs.sorted.spheres[p];
+            const bool hit = near<periodic>(a, b, pairs.period);
+            if constexpr (device == Device::cuda) return hit && neighbors::owns(a, id, b, pairs.sorted_ids[p]);
+            return hit & neighbors::owns(a, id, b, pairs.sorted_ids[p]);  // no branch: the CPU cannot guess its side
+        }
+    };
 
     GR_HD std::uint32_t index(std::size_t k) const { return indices.size ? indices[k] : static_cast<std::uint32_t>(k); }
     template <class Emit>
     GR_HD void find(std::size_t k, const Emit& emit) const {
-        const neighbors::Sphere a = spheres[k];
-        const std::uint32_t id = ids[k];
-        sorted.find(a, 2 * a.reach, [&](std::uint32_t p) -> bool {
-            const neighbors::Sphere& b = sorted.spheres[p];
-            const bool hit = near<periodic>(a, b, period);
-            if constexpr (device == Device::cuda) return hit && neighbors::owns(a, id, b, sorted_ids[p]);
-            return hit & neighbors::owns(a, id, b, sorted_ids[p]);  // no branch: the CPU cannot guess its side
-        }, emit);
+        sorted.find(spheres[k], 2 * spheres[k].reach, Owned{*this, spheres[k], ids[k]}, emit);
+    }
+    GR_HD bool wide(std::size_t k) const { return spheres[k].reach > wide_from; }
+    template <class Emit>
+    GR_HD void find_share(std::size_t k, std::uint32_t share, std::uint32_t shares, const Emit& emit) const {
+        sorted.find_share(spheres[k], 2 * spheres[k].reach, share, shares, Owned{*this, spheres[k], ids[k]}, emit);
     }
 };
 
@@ -110,14 +135,21 @@ public:
         return ranks_.bytes() + order_.bytes() + ids_.bytes() + spheres_.bytes() + starts_.bytes();
     }
 
+    void release() override {
+        for (Array<std::uint32_t>* a : {&ranks_, &order_, &ids_, &starts_}) a->release();
+        spheres_.release();
+    }
+
     Sorted sort(const neighbors::Packed& points, const neighbors::Request& r);
 
 private:
     template <bool periodic>
     void build(const Sorted& sorted, const neighbors::Packed& points, const neighbors::Request& r, NeighborList& list) {
+        const float wide_from = wide_reach * points.mean_reach;
+        const bool some_wide = points.max_reach > wide_from;
         const auto finder = r.local_order
-                                ? CellPairs<periodic>{sorted, ids_.view(), points.spheres.view(), points.ids.view(), {}, r.period}
-                                : CellPairs<periodic>{sorted, ids_.view(), spheres_.view(), ids_.view(), order_.view(), r.period};
+                                ? CellPairs<periodic>{sorted, ids_.view(), points.spheres.view(), points.ids.view(), {}, r.period, wide_from, some_wide}
+                                : CellPairs<periodic>{sorted, ids_.view(), spheres_.view(), ids_.view(), order_.view(), r.period, wide_from, some_wide};
         build_list(finder, points.size(), points.size(), r, list);
     }
 

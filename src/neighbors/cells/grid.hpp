@@ -83,25 +83,53 @@ struct Grid {
     /// pays where reading a point costs more than a guess that fails.
     template <bool cut, class Visit>
     GR_HD void for_each_run(const Sphere& s, float w, const Visit& visit) const {
-        const float pad = w * 1.000001f + 1e-37f;  // the predicate's own rounding
-        const bool round = cut && pad > 1e-15f && pad < 1e15f;  // where squares keep their digits
-        const AxisRange ry(y, s.y, pad), rz(z, s.z, pad);
-        const BucketRun whole(x, s.x, pad);
-        std::int32_t bz = z.bucket(rz.first);
-        for (std::int32_t k = 0; k < rz.count; ++k, bz = bz + 1 == z.buckets ? 0 : bz + 1) {
-            const float dz = !cut || rz.all ? 0.0f : z.distance(s.z, rz.first + k);
-            std::int32_t by = y.bucket(ry.first);
-            for (std::int32_t j = 0; j < ry.count; ++j, by = by + 1 == y.buckets ? 0 : by + 1) {
-                const float dy = !cut || ry.all ? 0.0f : y.distance(s.y, ry.first + j);
-                const float left = 1.000001f * (pad * pad) - (dy * dy + dz * dz);
-                if (round && left < 0) continue;
-                const BucketRun run = round ? BucketRun(x, s.x, smaller(sqrtf(left) * 1.000001f, pad)) : whole;
-                const std::uint32_t start = row(by, bz);
-                visit(start + run.first, start + run.first + run.head);
-                if (run.tail) visit(start, start + run.tail);
-            }
+        const Rows<cut> rows(*this, s, w);
+        std::int32_t bz = z.bucket(rows.z.first);
+        for (std::int32_t k = 0; k < rows.z.count; ++k, bz = bz + 1 == z.buckets ? 0 : bz + 1) {
+            std::int32_t by = y.bucket(rows.y.first);
+            for (std::int32_t j = 0; j < rows.y.count; ++j, by = by + 1 == y.buckets ? 0 : by + 1) rows.visit(j, by, k, bz, visit);
         }
     }
+    /// Every `shares`-th row of them, from row `share` on: what one of several threads looks at.
+    template <bool cut, class Visit>
+    GR_HD void for_each_run(const Sphere& s, float w, std::uint32_t share, std::uint32_t shares, const Visit& visit) const {
+        const Rows<cut> rows(*this, s, w);
+        const std::int32_t first_y = y.bucket(rows.y.first), first_z = z.bucket(rows.z.first);
+        const auto count_y = static_cast<std::uint32_t>(rows.y.count), all = count_y * static_cast<std::uint32_t>(rows.z.count);
+        for (std::uint32_t r = share; r < all; r += shares) {
+            const auto j = static_cast<std::int32_t>(r % count_y), k = static_cast<std::int32_t>(r / count_y);
+            const std::int32_t by = first_y + j, bz = first_z + k;
+            rows.visit(j, by < y.buckets ? by : by - y.buckets, k, bz < z.buckets ? bz : bz - z.buckets, visit);
+        }
+    }
+
+private:
+    /// The rows of buckets along x that a query meets.
+    template <bool cut>
+    struct Rows {
+        const Grid& grid;
+        Sphere s;
+        float pad;   ///< with the predicate's own rounding
+        bool round;  ///< the runs are cut; only where squares keep their digits
+        AxisRange y, z;
+        BucketRun whole;
+
+        GR_HD Rows(const Grid& g, const Sphere& sphere, float w)
+            : grid(g), s(sphere), pad(w * 1.000001f + 1e-37f), round(cut && pad > 1e-15f && pad < 1e15f), y(g.y, s.y, pad), z(g.z, s.z, pad),
+              whole(g.x, s.x, pad) {}
+
+        template <class Visit>
+        GR_HD void visit(std::int32_t j, std::int32_t by, std::int32_t k, std::int32_t bz, const Visit& visit_run) const {
+            const float dz = !cut || z.all ? 0.0f : grid.z.distance(s.z, z.first + k);
+            const float dy = !cut || y.all ? 0.0f : grid.y.distance(s.y, y.first + j);
+            const float left = 1.000001f * (pad * pad) - (dy * dy + dz * dz);
+            if (round && left < 0) return;
+            const BucketRun run = round ? BucketRun(grid.x, s.x, smaller(sqrtf(left) * 1.000001f, pad)) : whole;
+            const std::uint32_t start = grid.row(by, bz);
+            visit_run(start + run.first, start + run.first + run.head);
+            if (run.tail) visit_run(start, start + run.tail);
+        }
+    };
 };
 
 /// Cells about 2 mean reaches wide, at most about two buckets a point.

@@ -1,0 +1,56 @@
+// The forecast of device memory, and lists that must not outgrow it.
+#include <gtest/gtest.h>
+
+#include <numeric>
+
+#include "grainray/simulation.hpp"
+#include "neighbors/interval.hpp"
+
+using namespace grainray;
+
+namespace {
+
+double forecast(const Scene& scene, const std::vector<double>& radii, const std::string& backend = "cells", double triangles = 0, double nodes = 0) {
+    const auto parts = forecast_device_memory(scene, static_cast<double>(radii.size()), radii, backend, triangles, nodes);
+    return std::accumulate(parts.begin(), parts.end(), 0.0, [](double sum, const MemoryPart& part) { return sum + part.bytes; });
+}
+
+}  // namespace
+
+TEST(DeviceMemory, GrowsWithTheParticlesAndWithWhatTheSceneAdds) {
+    const Scene plain;
+    const std::vector<double> equal(100'000, 0.1);
+    const double once = forecast(plain, equal), twice = forecast(plain, std::vector<double>(200'000, 0.1));
+    const double a_particle = (twice - once) / 1e5;
+    EXPECT_GT(a_particle, 400);
+    EXPECT_LT(a_particle, 900);
+    EXPECT_NEAR(2 * once - twice, forecast(plain, {}), 1e-6 * once);  // what no particle causes
+
+    std::vector<double> with_boulder = equal;
+    with_boulder[7] = 3.2;  // about 2 * 3 * 33^2 small ones near, a row that 31 others are stored as wide as
+    EXPECT_NEAR(forecast(plain, with_boulder) - once, 32 * 6 * 33 * 33 * 16, 0.1 * 32 * 6 * 33 * 33 * 16);
+    EXPECT_NEAR(forecast(plain, equal, "rays") - once, 390 * 1e5, 0.1 * 390 * 1e5);
+
+    Scene ground;
+    ground.terrain.emplace();
+    EXPECT_NEAR(forecast(ground, equal, "cells", 0, 1e6) - forecast(ground, equal), 8e6, 0.1 * 8e6);
+}
+
+TEST(IntervalTuner, MakesListsShorterThatBecameTooLarge) {
+    IntervalTuner tuner;
+    const double interval = tuner.interval(), skin = tuner.skin();
+    tuner.shorten(2 * interval, 2 * skin);
+    EXPECT_EQ(tuner.interval(), interval);
+    EXPECT_EQ(tuner.skin(), skin);
+    tuner.shorten(0.5 * interval, 0.5 * skin);
+    EXPECT_EQ(tuner.interval(), 0.5 * interval);
+    EXPECT_EQ(tuner.skin(), 0.5 * skin);
+    for (int list = 0; list < 3; ++list) tuner.finished({0.5 * interval, 1000, 100, 0.2, false, 1e-1, 1e-6});  // dear to make, cheap to use
+    EXPECT_GT(tuner.interval(), 0.5 * interval);  // it tries again, in small steps
+    EXPECT_LT(tuner.interval(), 0.6 * interval);
+
+    IntervalTuner fixed(30, 0.1);
+    fixed.shorten(10, 0.05);
+    EXPECT_EQ(fixed.interval(), 30);
+    EXPECT_EQ(fixed.skin(), 0.1);
+}
