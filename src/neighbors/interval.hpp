@@ -45,6 +45,7 @@ public:
 
     void finished(const Life& life) {
         if (life.steps == 0 || life.entries == 0 || life.margin == 0) return;
+        if (!(life.update_seconds > 0 && life.contact_seconds > 0)) return;  // a caller has set its profile to zero meanwhile
         smooth(update_, life.update_seconds);
         smooth(entry_, candidate_share_ * life.contact_seconds / life.steps / life.entries);
         const double making = update_ / life.steps, of_entries = life.entries / (life.entries + entries_worth_a_particle * life.particles);

@@ -134,6 +134,15 @@ TEST(IntervalTuner, SettlesRoundTheOptimum) {
     EXPECT_LT(tuner.skin(), 0.011);  // nobody leaves early
 }
 
+TEST(IntervalTuner, IgnoresAListWhoseTimesWereTakenAway) {  // a caller may set the profile to zero
+    IntervalTuner tuner;
+    const double interval = tuner.interval(), skin = tuner.skin();
+    tuner.finished({20, 1000, 100, 0.1, false, -5.0, -3.0});
+    tuner.finished({20, 1000, 100, 0.1, true, -5.0, 0.1});
+    EXPECT_EQ(tuner.interval(), interval);
+    EXPECT_EQ(tuner.skin(), skin);
+}
+
 TEST(IntervalTuner, WidensMarginsWhereListsEndEarlyAndCostMuch) {
     IntervalTuner tuner, dear;
     for (int k = 0; k < 20; ++k) {
