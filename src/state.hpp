@@ -85,7 +85,7 @@ struct MarginRule {
     float least = 0;          ///< of the particle's radius
     float spread = 0.5f;      ///< standard deviations of the surroundings' velocity added to the particle's own speed
     float interval = 20;      ///< steps the list is meant to last
-    float most_units = 0;     ///< the largest radius: margins beyond it would outgrow the near words
+    float most_units = 0;     ///< the largest radius; listed pairs stay within 13 of them, and near words hold 16
     float trigger = 1;        ///< displacement / margin that outdates the list: 1 safe, 2 published
 };
 

@@ -2,11 +2,11 @@
 //
 // The world is cut into boxes 8 largest radii wide. The mean velocity U around a box is the frame of the particles in it:
 // motion that the surroundings share is no displacement. A list made for t steps holds while every particle's displacement,
-// less U t, is below its own margin m_i <= r_max (src/dynamics/integrate.cpp checks each step), because a pair drifts apart or
-// together by at most m_i + m_j + |U_i - U_j| t, and
+// less U t, is below its own margin m_i <= k r_max (src/dynamics/integrate.cpp checks each step; k: `widest`), because a pair drifts
+// apart or together by at most m_i + m_j + |U_i - U_j| t, and
 //   in one box or two that touch, the reach r_i + m_i + e_c, e_c = t/2 max |U_c - U_c'| over the boxes around, covers it;
-//   with one box between, 8 r_max lie between: t |U_c - U_c'| <= 4 r_max keeps them apart;
-//   farther away, 16 r_max do: t times the spread of all frames <= 12 r_max keeps them apart.
+//   with one box between, 8 r_max lie between: t |U_c - U_c'| <= (6 - 2 k) r_max keeps them apart;
+//   farther away, 16 r_max do: t times the spread of all frames <= (14 - 2 k) r_max keeps them apart.
 // So coherent motion is free, and a lone runaway has a wide margin that nobody else pays for.
 #include "exec/exec.hpp"
 #include "neighbors/cells/grid.hpp"
@@ -49,6 +49,7 @@ struct Boxes {
     }
 };
 
+constexpr float widest = 1.5f;   // margin, largest radii: more for runaways leaves less for frames that differ
 constexpr float fastest = 1e9f;  // units a step; particles beyond it are reported by the integrator
 
 GR_HD inline float held(float v) { return v < fastest ? (v > -fastest ? v : -fastest) : fastest; }
@@ -114,7 +115,7 @@ float longest_life(const Boxes& boxes, float wanted, float radius, float blur) {
         return boxes.sums[c].count ? Extremes{a.shear, a.beyond, a.frame, a.frame} : none;
     }, JoinExtremes{});
     const float spread = boxes.sums.size ? length(e.fastest - e.slowest) : 0, least = 1e-30f;
-    const float bound = fminf(radius / (e.shear + least), fminf((4 - blur) * radius / (e.beyond + least), (12 - blur) * radius / (spread + least)));
+    const float bound = fminf(radius / (e.shear + least), fminf((6 - 2 * widest - blur) * radius / (e.beyond + least), (14 - 2 * widest - blur) * radius / (spread + least)));
     return fmaxf(1.0f, floorf(fminf(wanted, bound)));
 }
 
@@ -170,7 +171,7 @@ void margins(State& s, const StepConstants& constants, const MarginRule& rule, A
     const float longest = fmaxf(fmaxf(fmaxf(fabsf(s.lower.x), fabsf(s.upper.x)), fmaxf(fabsf(s.lower.y), fabsf(s.upper.y))),
                                 fmaxf(fmaxf(fabsf(s.lower.z), fabsf(s.upper.z)), fmaxf(period.x, fmaxf(period.y, period.z))));
 
-    const float steps = longest_life(boxes, rule.interval, rule.most_units, fminf(longest / largest * 5e-7f, 3.9f));
+    const float steps = longest_life(boxes, rule.interval, rule.most_units, fminf(longest / largest * 5e-7f, 2.9f));
     s.age.limit = static_cast<std::uint32_t>(steps);
 
     const auto near = s.particles.near.view(), built = s.built.view();
@@ -179,7 +180,7 @@ void margins(State& s, const StepConstants& constants, const MarginRule& rule, A
         const Near q = near[i];
         const Surroundings& a = boxes.around[boxes.of(spheres[i])];
         const float own = length(body[i].velocity * to_units - a.frame) + rule.spread * a.spread;
-        const float margin = fminf(own * steps + rule.least * static_cast<float>(q.radius), rule.most_units);
+        const float margin = fminf(own * steps + rule.least * static_cast<float>(q.radius), widest * rule.most_units);
         built[i] = {q.x, q.y, q.z, static_cast<std::int32_t>(margin)};
         frame[i] = a.frame;
         const float reach = static_cast<float>((static_cast<double>(q.radius) + built[i].radius + a.shear * steps) * unit);
