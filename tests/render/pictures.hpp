@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstdlib>
+#include <functional>
+#include <string>
 #include <vector>
 
 #include "grainray/render.hpp"
@@ -18,6 +20,16 @@ inline void add(Frame& frame, const Vec3d& position, float radius, std::uint32_t
     frame.contact_force.push_back(radius);
     frame.velocity.push_back(velocity);
     frame.angular_velocity.push_back(velocity);
+}
+
+/// What a refusal says; empty where there was none.
+inline std::string message(const std::function<void()>& act) {
+    try {
+        act();
+    } catch (const InputError& error) {
+        return error.what();
+    }
+    return "";
 }
 
 /// n x n x n spheres of radius 0.1, the faster the farther to +x.

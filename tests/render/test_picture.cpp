@@ -17,15 +17,6 @@ bool orange(const Rgb& c) { return c.r > c.g + 20 && c.g > c.b + 20; }
 bool yellow(const Rgb& c) { return c.r > 180 && c.g > 180 && c.b < 100; }
 bool violet(const Rgb& c) { return c.b > c.g + 30 && c.r > c.g + 10 && c.b < 160; }
 
-std::string message(const std::function<void()>& act) {
-    try {
-        act();
-    } catch (const InputError& error) {
-        return error.what();
-    }
-    return "";
-}
-
 }  // namespace
 
 TEST(Picture, SphereInTheMiddleBackgroundAround) {

@@ -62,15 +62,6 @@ RenderSettings from_above() {
 bool grey(const Rgb& c) { return std::abs(c.r - c.g) < 25 && std::abs(c.g - c.b) < 25 && !c.white(); }
 int brightness(const Rgb& c) { return c.r + c.g + c.b; }
 
-std::string message(const std::function<void()>& act) {
-    try {
-        act();
-    } catch (const InputError& error) {
-        return error.what();
-    }
-    return "";
-}
-
 }  // namespace
 
 TEST(MeshPicture, FacetsCoverTheirPixelsFromBothSides) {
