@@ -111,56 +111,6 @@ void atomic_add_together(std::int64_t* to, const std::array<std::int64_t, n>& va
     for (std::size_t k = 0; k < n; ++k) atomic_add(&to[k], value[k]);
 }
 
-/// What each work item of a Finder (neighbors/list.hpp) finds, twice: searched once, then kept from the first pass.
-template <class Finder>
-class Found {
-public:
-    Found(const Finder& finder, std::size_t items) : finder_(finder), items_(items), kept_((items + chunk - 1) / chunk) {}
-
-    /// visit(k, found) for every item; found.for_each(emit) gives what it found.
-    template <class Visit>
-    void search(const Visit& visit) {
-        for_each(kept_.size(), [&](std::size_t c) {
-            std::vector<std::uint32_t> kept(chunk * 16);
-            std::size_t end = 0;
-            const auto keep = [&](std::uint32_t j, bool hit) {  // always written, counted if hit: no branch to guess
-                if (end == kept.size()) kept.resize(2 * end);
-                kept[end] = j;
-                end += hit;
-            };
-            for (std::size_t k = c * chunk; k < std::min(items_, (c + 1) * chunk); ++k) {
-                const std::size_t start = end;
-                keep(0, true);
-                finder_.find(k, keep);
-                kept[start] = static_cast<std::uint32_t>(end - start - 1);
-                visit(k, Row{&kept[start]});
-            }
-            kept_[c].assign(kept.begin(), kept.begin() + static_cast<std::ptrdiff_t>(end));  // as small as it can be: all stay until the list is filled
-        }, 1);
-    }
-    template <class Visit>
-    void again(const Visit& visit) const {
-        for_each(kept_.size(), [&](std::size_t c) {
-            const std::uint32_t* row = kept_[c].data();
-            for (std::size_t k = c * chunk; k < std::min(items_, (c + 1) * chunk); ++k, row += *row + 1) visit(k, Row{row});
-        }, 1);
-    }
-
-private:
-    static constexpr std::size_t chunk = 256;
-    struct Row {
-        static constexpr bool shared = false;
-        const std::uint32_t* entries;  ///< count, then what was found
-        template <class Emit>
-        void for_each(const Emit& emit) const {
-            for (std::uint32_t e = 1; e <= *entries; ++e) emit(entries[e]);
-        }
-    };
-    Finder finder_;
-    std::size_t items_;
-    std::vector<std::vector<std::uint32_t>> kept_;
-};
-
 inline void synchronize() {}
 
 }  // namespace grainray::cpu

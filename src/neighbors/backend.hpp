@@ -13,7 +13,7 @@ struct Packed {
     explicit Packed(Device device) : spheres(device), ids(device) {}
     Array<Sphere> spheres;
     Array<std::uint32_t> ids;
-    float mean_reach = 0, max_reach = 0;
+    float min_reach = 0, mean_reach = 0, max_reach = 0;
     Vec3f lower{}, upper{};  ///< bounds of the centres
     std::size_t size() const { return spheres.size(); }
 };

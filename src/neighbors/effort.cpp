@@ -19,7 +19,7 @@ struct Join {
 
 Effort cells_effort(const neighbors::Packed& asking, const neighbors::Packed& points, bool of_queries, const neighbors::Request& r) {
     if (asking.size() == 0 || points.size() == 0) return {};
-    const neighbors::Grid grid = neighbors::make_grid(points.size(), points.mean_reach, points.lower, points.upper, r.lower, r.period);
+    const neighbors::Grid grid = neighbors::make_grid(points.size(), points.mean_reach, points.lower, points.upper, r.lower, r.period, neighbors::search_cut_x);
     Array<std::uint32_t> starts(device, grid.buckets() + 1);
     starts.clear_bytes();
     const auto start = starts.view();

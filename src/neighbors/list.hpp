@@ -1,15 +1,17 @@
-// From "the owner i has found j" to rows: count, scan, fill, sort. Written once for every back end; no row has a cap.
+// From "the owner i has found j" to rows. Written once for every back end; no row has a cap.
 //
 // A Finder is copied to the device and gives
 //   index(k)        the point that work item k stands for (a locality-friendly order of the points)
-//   find(k, emit)   calls emit(j, hit) for candidates j, hit where index(k) owns the pair
+//   find(k, emit)   calls emit(place, hit) for candidates, hit where the pair belongs to index(k)
+//   partner(place)  the point of a candidate
+//   one_set         on CUDA: whether both are points of one set, so that a hit of a point with itself is none
 // and, where items may have far more candidates than others, so that CUDA lets a block of threads look at each of those,
 //   some_wide       there are such items
 //   wide(k)         item k is one
 //   find_share(k, share, shares, emit)   the part of find(k, emit) that is thread `share`'s
 #pragma once
 
-#include "exec/exec.hpp"
+#include "exec/found.hpp"
 #include "neighbors/backend.hpp"
 
 namespace grainray::GRAINRAY_EXEC {
@@ -45,70 +47,27 @@ GR_HD inline void sort(std::uint32_t* a, std::size_t n) {
     }
 }
 
-/// First pass: how much each row will hold. In the other row of a mirrored pair it is counted atomically.
-template <class Finder>
-struct Count {
-    Finder finder;
-    View<std::uint32_t> own;       ///< found by the row's own point; mirrored entries stand after them
-    View<std::uint64_t> counts;
-    std::uint32_t block;
-
-    template <class Row>
-    GR_HD void operator()(std::size_t k, const Row& row) const {
-        const std::uint32_t i = finder.index(k);
-        std::uint32_t found = 0;
-        row.for_each([&](std::uint32_t j) {
-            ++found;
-            if (block == 1 || i / block != j / block) atomic_add(&counts[j], std::uint64_t{1});
-        });
-        if constexpr (!Row::shared) own[i] = found;  // else all entries of the row stand in the order in which they come
-        if (found) atomic_add(&counts[i], std::uint64_t{found});
-    }
-};
-
-/// Second pass.
-template <class Finder>
-struct Fill {
-    Finder finder;
-    View<const std::uint64_t> offsets;
-    View<std::uint32_t> next;      ///< where the next mirrored entry of a row goes, from its start
-    View<std::uint32_t> entries;
-    std::uint32_t block;
-
-    template <class Row>
-    GR_HD void operator()(std::size_t k, const Row& row) const {
-        const std::uint32_t i = finder.index(k);
-        std::uint64_t slot = offsets[i];
-        row.for_each([&](std::uint32_t j) {
-            if constexpr (Row::shared) entries[slot + atomic_add(&next[i], 1u)] = j;
-            else entries[slot++] = j;
-            if (block == 1 || i / block != j / block) entries[offsets[j] + atomic_add(&next[j], 1u)] = i;
-        });
-    }
-};
-
 }  // namespace rows
 
-/// Fills `list` with the rows of `items` work items over `n` points, as Request::kind says.
-template <class Finder>
-void build_list(const Finder& finder, std::size_t items, std::size_t n, const neighbors::Request& request, NeighborList& list) {
-    static_assert(std::is_trivially_copyable_v<Finder>);
-    // Blocks generalise the kinds: in one endless block each pair stands once, in blocks of one it stands twice.
-    const std::uint32_t block = request.kind == ListKind::half ? 0xffffffffu : request.kind == ListKind::full ? 1u : request.block;
-    Array<std::uint32_t> own_counts(device, n);
-    own_counts.clear_bytes();
-    list.offsets.resize_discard(n + 1);
-    list.offsets.clear_bytes();
-    const auto offsets = list.offsets.view();
-    const auto own = own_counts.view();
+/// Whom the owner i of a pair has to tell of it: in one endless block each pair stands once, in blocks of one it stands twice.
+struct Mirror {
+    std::uint32_t block;
+    bool some;  ///< false: nobody
 
-    Found<Finder> found(finder, items);
-    found.search(rows::Count<Finder>{finder, own, offsets, block});
-    list.neighbors.resize_discard_slack(exclusive_scan(offsets));
+    explicit Mirror(const neighbors::Request& r)
+        : block(r.kind == ListKind::half ? 0xffffffffu : r.kind == ListKind::full ? 1u : r.block), some(r.kind != ListKind::half) {}
+    GR_HD bool operator()(std::uint32_t i, std::uint32_t j) const { return block == 1 || i / block != j / block; }
+};
+
+/// Fills `list` with a row for each of `items` work items; what find(k, emit) emits stands in the row of index(k) and, where
+/// tells(index(k), j), in that of j.
+template <class Finder, class Tells>
+void build_list(const Finder& finder, std::size_t items, const Tells& tells, bool ascending, NeighborList& list) {
+    collect(finder, items, tells, list);
+    if (!ascending) return;
+    const auto offsets = list.offsets.view();
     const auto entries = list.neighbors.view();
-    found.again(rows::Fill<Finder>{finder, offsets, own, entries, block});
-    if (request.ascending)
-        for_each(n, [=] GR_HD(std::size_t i) { rows::sort(entries.data + offsets[i], offsets[i + 1] - offsets[i]); });
+    for_each(items, [=] GR_HD(std::size_t i) { rows::sort(entries.data + offsets[i], offsets[i + 1] - offsets[i]); });
 }
 
 }  // namespace grainray::GRAINRAY_EXEC

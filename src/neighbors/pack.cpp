@@ -7,7 +7,7 @@ namespace {
 
 struct Extent {
     float lo[3], hi[3];
-    double max_reach, sum_reach;
+    double min_reach, max_reach, sum_reach;
 };
 
 struct Join {
@@ -16,6 +16,7 @@ struct Join {
             a.lo[k] = a.lo[k] < b.lo[k] ? a.lo[k] : b.lo[k];
             a.hi[k] = a.hi[k] > b.hi[k] ? a.hi[k] : b.hi[k];
         }
+        a.min_reach = a.min_reach < b.min_reach ? a.min_reach : b.min_reach;
         a.max_reach = a.max_reach > b.max_reach ? a.max_reach : b.max_reach;
         a.sum_reach += b.sum_reach;
         return a;
@@ -50,7 +51,7 @@ void pack_points(const Points& points, const neighbors::Request& request, const 
     packed.spheres.resize_discard(n);
     packed.ids.resize_discard(n);
     packed.lower = packed.upper = {};
-    packed.mean_reach = packed.max_reach = 0;
+    packed.min_reach = packed.mean_reach = packed.max_reach = 0;
     if (n == 0) return;
 
     Array<std::uint32_t> first_bad(device, std::vector<std::uint32_t>{0xffffffffu});
@@ -70,13 +71,14 @@ void pack_points(const Points& points, const neighbors::Request& request, const 
     if (const std::uint32_t b = first_bad.to_host()[0]; b != 0xffffffffu) refuse(points, b, what);
 
     constexpr float huge = 3.4e38f;
-    const Extent none{{huge, huge, huge}, {-huge, -huge, -huge}, 0, 0};
+    const Extent none{{huge, huge, huge}, {-huge, -huge, -huge}, huge, 0, 0};
     const Extent all = reduce(n, none, [=] GR_HD(std::size_t i) {
         const neighbors::Sphere s = spheres[i];
-        return Extent{{s.x, s.y, s.z}, {s.x, s.y, s.z}, s.reach, s.reach};
+        return Extent{{s.x, s.y, s.z}, {s.x, s.y, s.z}, s.reach, s.reach, s.reach};
     }, Join{});
     packed.lower = {all.lo[0], all.lo[1], all.lo[2]};
     packed.upper = {all.hi[0], all.hi[1], all.hi[2]};
+    packed.min_reach = static_cast<float>(all.min_reach);
     packed.max_reach = static_cast<float>(all.max_reach);
     packed.mean_reach = static_cast<float>(all.sum_reach / static_cast<double>(n));
 }

@@ -156,7 +156,7 @@ void margins(State& s, const StepConstants& constants, const MarginRule& rule, A
 
     const Vec3f period = convert<float>(convert<double>(s.period) * unit);
     const float largest = static_cast<float>(rule.most_units * unit);
-    Boxes boxes{neighbors::make_grid(n / 8, 4 * largest, s.lower, s.upper, Vec3f{}, period), {}, {}};
+    Boxes boxes{neighbors::make_grid(n / 8, 4 * largest, s.lower, s.upper, Vec3f{}, period, 1), {}, {}};
     Array<Sums> sums(device, boxes.grid.buckets());
     Array<Surroundings> around(device, boxes.grid.buckets());
     sums.clear_bytes();

@@ -101,6 +101,9 @@ inline std::vector<Cloud> adversarial_clouds() {
     std::normal_distribution<float> normal(-1.5f, 0.7f);
     for (float& r : lognormal.reach) r = std::exp(normal(e));
     all.push_back(lognormal);
+    Cloud nearly_equal = random_cloud("nearly_equal", 1500, -1, 1, 0.09f, 38);  // CUDA lets some of these find each other both
+    for (std::size_t i = 0; i < nearly_equal.size(); ++i) nearly_equal.reach[i] *= 0.7f + 0.025f * static_cast<float>(i % 25);
+    all.push_back(nearly_equal);
     all.push_back(random_cloud("squares_underflow", 300, -1e-22f, 1e-22f, 2e-23f, 33));
     all.push_back(random_cloud("squares_overflow", 150, -5e18f, 5e18f, 3e19f, 34));
     all.push_back(random_cloud("coordinates_past_1e18", 300, -4e18f, 4e18f, 4e17f, 35));

@@ -9,6 +9,8 @@ struct BrutePairs {
     View<const std::uint32_t> ids;
     Vec3f period;
 
+    static constexpr bool one_set = true;
+    GR_HD std::uint32_t partner(std::uint32_t place) const { return place; }
     GR_HD std::uint32_t index(std::size_t k) const { return static_cast<std::uint32_t>(k); }
     template <class Emit>
     GR_HD void find(std::size_t k, const Emit& emit) const {
@@ -22,6 +24,8 @@ struct BruteQueries {
     View<const neighbors::Sphere> queries, points;
     Vec3f period;
 
+    static constexpr bool one_set = false;
+    GR_HD std::uint32_t partner(std::uint32_t place) const { return place; }
     GR_HD std::uint32_t index(std::size_t k) const { return static_cast<std::uint32_t>(k); }
     template <class Emit>
     GR_HD void find(std::size_t k, const Emit& emit) const {
@@ -33,10 +37,10 @@ struct BruteQueries {
 class Brute final : public neighbors::Backend {
 public:
     void pairs(const neighbors::Packed& p, const neighbors::Request& r, NeighborList& list) override {
-        build_list(BrutePairs{p.spheres.view(), p.ids.view(), r.period}, p.size(), p.size(), r, list);
+        build_list(BrutePairs{p.spheres.view(), p.ids.view(), r.period}, p.size(), Mirror(r), r.ascending, list);
     }
     void queries(const neighbors::Packed& q, const neighbors::Packed& p, const neighbors::Request& r, NeighborList& list) override {
-        build_list(BruteQueries{q.spheres.view(), p.spheres.view(), r.period}, q.size(), q.size(), r, list);
+        build_list(BruteQueries{q.spheres.view(), p.spheres.view(), r.period}, q.size(), Mirror(r), r.ascending, list);
     }
     std::size_t memory_bytes() const override { return 0; }
 };

@@ -12,49 +12,31 @@ struct Sorted {
     View<const std::uint32_t> order;   ///< index of the point at each place
     View<const std::uint32_t> starts;  ///< buckets + 1: first place of each bucket
 
-    /// Candidates of one of `shares` threads that look at the surroundings of s together.
+    /// emit(place, hit) for the candidates of one of `shares` threads that look at the surroundings of s together. test(point, its place).
     template <class Test, class Emit>
     GR_HD void find_share(const neighbors::Sphere& s, float half_width, std::uint32_t share, std::uint32_t shares, const Test& test, const Emit& emit) const {
         grid.for_each_run<true>(s, half_width, share, shares, [&](std::uint32_t first, std::uint32_t last) {
-            for (std::uint32_t p = starts[first], end = starts[last]; p < end; ++p) emit(order[p], test(p));
+            for (std::uint32_t p = starts[first], end = starts[last]; p < end; ++p) emit(p, test(spheres[p], p));
         });
     }
 
     template <class Test, class Emit>
     GR_HD void find(const neighbors::Sphere& s, float half_width, const Test& test, const Emit& emit) const {
-        if constexpr (device == Device::cuda) return find_flat(s, half_width, test, emit);
         grid.for_each_run<device == Device::cuda>(s, half_width, [&](std::uint32_t first, std::uint32_t last) {
-            for (std::uint32_t p = starts[first], end = starts[last]; p < end; ++p) emit(order[p], test(p));
+            if constexpr (device == Device::cuda) visit_pairs(starts[first], starts[last], test, emit);
+            else for (std::uint32_t p = starts[first], end = starts[last]; p < end; ++p) emit(p, test(spheres[p], p));
         });
     }
 
-    /// The same with one loop over the points of up to 16 runs: the lanes of a warp wait for the one with most points, not
-    /// for the longest of each run.
+    /// Two points at a time, so that they are waited for together.
     template <class Test, class Emit>
-    GR_HD void find_flat(const neighbors::Sphere& s, float half_width, const Test& test, const Emit& emit) const {
-        constexpr int most = 16;
-        std::uint32_t begin[most], end[most];
-        int runs = 0;
-        const auto visit = [&] {
-            for (int r = 0; r < runs;) {
-                std::uint32_t p = begin[r], stop = end[r];
-                for (;;) {
-                    emit(order[p], test(p));
-                    if (++p < stop) continue;
-                    if (++r == runs) break;
-                    p = begin[r];
-                    stop = end[r];
-                }
-            }
-            runs = 0;
-        };
-        grid.for_each_run<device == Device::cuda>(s, half_width, [&](std::uint32_t first, std::uint32_t last) {
-            begin[runs] = starts[first];
-            end[runs] = starts[last];
-            runs += begin[runs] < end[runs];
-            if (runs == most) visit();
-        });
-        visit();
+    GR_HD void visit_pairs(std::uint32_t p, std::uint32_t end, const Test& test, const Emit& emit) const {
+        for (; p < end; p += 2) {
+            const std::uint32_t q = p + 1 < end ? p + 1 : p;
+            const neighbors::Sphere a = spheres[p], b = spheres[q];
+            emit(p, test(a, p));
+            emit(q, (q != p) & test(b, q));
+        }
     }
 };
 
@@ -67,39 +49,69 @@ GR_HD inline bool near(const neighbors::Sphere& a, const neighbors::Sphere& b, c
     else return neighbors::pair_test(a, b);
 }
 
-template <bool periodic>
+/// Where rows are full, CUDA lets both points of a pair find it where their reaches are about equal: to find twice costs less
+/// than to tell the other. A point sees those of no larger reach, of up to `common`, and up to a quarter larger; of two, the one with the
+/// larger reach sees the other.
+struct Sight {
+    float common;
+
+    GR_HD float limit(float reach) const { return neighbors::larger(reach, neighbors::smaller(common, 1.25f * reach)); }
+    GR_HD bool sees(const neighbors::Sphere& a, const neighbors::Sphere& b) const { return b.reach <= limit(a.reach); }
+};
+
+/// Whom point i has to tell of the pair.
+struct Unseeing {
+    View<const neighbors::Sphere> spheres;
+    Sight sight;
+    bool some;
+
+    GR_HD bool operator()(std::uint32_t i, std::uint32_t j) const { return !sight.sees(spheres[j], spheres[i]); }
+};
+
+/// What a point takes for its row: pairs that it owns or, `seen`, all that it sees.
+template <bool periodic, bool seen>
 struct CellPairs {
     Sorted sorted;
     View<const std::uint32_t> sorted_ids;
     View<const neighbors::Sphere> spheres;  ///< the points in the order in which they are looked at
     View<const std::uint32_t> ids, indices; ///< no indices: the points' own order
+    View<const std::uint32_t> places;       ///< of the points in their own order
     Vec3f period;
+    Sight sight;
     float wide_from;                        ///< reach from which a point is wide
     bool some_wide;
 
-    /// Whether the pair with the point at place p is owned.
-    struct Owned {
+    struct Taken {
         const CellPairs& pairs;
         neighbors::Sphere a;
-        std::uint32_t id;
+        std::uint32_t id, place;
+        float limit;
 
-        GR_HD bool operator()(std::uint32_t p) const {
-            const neighbors::Sphere& b = pairs.sorted.spheres[p];
+        GR_HD bool operator()(const neighbors::Sphere& b, std::uint32_t p) const {
             const bool hit = near<periodic>(a, b, pairs.period);
+            if constexpr (seen) return hit & (b.reach <= limit) & (p != place);
             if constexpr (device == Device::cuda) return hit && neighbors::owns(a, id, b, pairs.sorted_ids[p]);
             return hit & neighbors::owns(a, id, b, pairs.sorted_ids[p]);  // no branch: the CPU cannot guess its side
         }
     };
 
+    static constexpr bool one_set = true;
+    GR_HD std::uint32_t partner(std::uint32_t place) const { return sorted.order[place]; }
+    GR_HD Taken taken(std::size_t k) const {
+        const neighbors::Sphere& a = spheres[k];
+        return {*this, a, ids[k], indices.size ? static_cast<std::uint32_t>(k) : places[k], seen ? sight.limit(a.reach) : a.reach};
+    }
     GR_HD std::uint32_t index(std::size_t k) const { return indices.size ? indices[k] : static_cast<std::uint32_t>(k); }
     template <class Emit>
     GR_HD void find(std::size_t k, const Emit& emit) const {
-        sorted.find(spheres[k], 2 * spheres[k].reach, Owned{*this, spheres[k], ids[k]}, emit);
+        const Taken t = taken(k);
+        sorted.find(t.a, t.a.reach + t.limit, t, emit);
     }
     GR_HD bool wide(std::size_t k) const { return spheres[k].reach > wide_from; }
     template <class Emit>
     GR_HD void find_share(std::size_t k, std::uint32_t share, std::uint32_t shares, const Emit& emit) const {
-        sorted.find_share(spheres[k], 2 * spheres[k].reach, share, shares, Owned{*this, spheres[k], ids[k]}, emit);
+        const Taken t = taken(k);
+        sorted.find_share(t.a, t.a.reach + t.limit, share, shares, t, emit);
     }
 };
 
@@ -110,11 +122,13 @@ struct CellQueries {
     Vec3f period;
     float max_reach;
 
+    static constexpr bool one_set = false;
+    GR_HD std::uint32_t partner(std::uint32_t place) const { return sorted.order[place]; }
     GR_HD std::uint32_t index(std::size_t k) const { return static_cast<std::uint32_t>(k); }
     template <class Emit>
     GR_HD void find(std::size_t k, const Emit& emit) const {
         const neighbors::Sphere q = queries[k];
-        sorted.find(q, q.reach + max_reach, [&](std::uint32_t p) { return near<periodic>(q, sorted.spheres[p], period); }, emit);
+        sorted.find(q, q.reach + max_reach, [&](const neighbors::Sphere& b, std::uint32_t) { return near<periodic>(q, b, period); }, emit);
     }
 };
 
@@ -128,8 +142,8 @@ public:
     void queries(const neighbors::Packed& q, const neighbors::Packed& points, const neighbors::Request& r, NeighborList& list) override {
         const Sorted sorted = sort(points, r);
         const auto queries = q.spheres.view();
-        if (r.periodic()) build_list(CellQueries<true>{sorted, queries, r.period, points.max_reach}, q.size(), q.size(), r, list);
-        else build_list(CellQueries<false>{sorted, queries, r.period, points.max_reach}, q.size(), q.size(), r, list);
+        if (r.periodic()) build_list(CellQueries<true>{sorted, queries, r.period, points.max_reach}, q.size(), Mirror(r), r.ascending, list);
+        else build_list(CellQueries<false>{sorted, queries, r.period, points.max_reach}, q.size(), Mirror(r), r.ascending, list);
     }
     std::size_t memory_bytes() const override {
         return ranks_.bytes() + order_.bytes() + ids_.bytes() + spheres_.bytes() + starts_.bytes();
@@ -145,12 +159,20 @@ public:
 private:
     template <bool periodic>
     void build(const Sorted& sorted, const neighbors::Packed& points, const neighbors::Request& r, NeighborList& list) {
+        const Sight sight{points.mean_reach};
+        const bool full = r.kind == ListKind::full || (r.kind == ListKind::blocked && r.block == 1);
+        if constexpr (device == Device::cuda)
+            if (full)
+                return build_list(finder<periodic, true>(sorted, points, r, sight), points.size(),
+                                  Unseeing{points.spheres.view(), sight, points.max_reach > sight.limit(points.min_reach)}, r.ascending, list);
+        build_list(finder<periodic, false>(sorted, points, r, sight), points.size(), Mirror(r), r.ascending, list);
+    }
+    template <bool periodic, bool seen>
+    CellPairs<periodic, seen> finder(const Sorted& sorted, const neighbors::Packed& points, const neighbors::Request& r, const Sight& sight) const {
         const float wide_from = wide_reach * points.mean_reach;
         const bool some_wide = points.max_reach > wide_from;
-        const auto finder = r.local_order
-                                ? CellPairs<periodic>{sorted, ids_.view(), points.spheres.view(), points.ids.view(), {}, r.period, wide_from, some_wide}
-                                : CellPairs<periodic>{sorted, ids_.view(), spheres_.view(), ids_.view(), order_.view(), r.period, wide_from, some_wide};
-        build_list(finder, points.size(), points.size(), r, list);
+        if (r.local_order) return {sorted, ids_.view(), points.spheres.view(), points.ids.view(), {}, ranks_.view(), r.period, sight, wide_from, some_wide};
+        return {sorted, ids_.view(), spheres_.view(), ids_.view(), order_.view(), ranks_.view(), r.period, sight, wide_from, some_wide};
     }
 
     Array<std::uint32_t> ranks_{device}, order_{device}, ids_{device}, starts_{device};
@@ -160,7 +182,7 @@ private:
 /// A counting sort: how many lie in each bucket, where each bucket starts, and each point to its place.
 Sorted Cells::sort(const neighbors::Packed& points, const neighbors::Request& r) {
     const std::size_t n = points.size();
-    const neighbors::Grid grid = neighbors::make_grid(n, points.mean_reach, points.lower, points.upper, r.lower, r.period);
+    const neighbors::Grid grid = neighbors::make_grid(n, points.mean_reach, points.lower, points.upper, r.lower, r.period, neighbors::search_cut_x);
     ranks_.resize_discard(n);
     order_.resize_discard(n);
     spheres_.resize_discard(n);
@@ -178,6 +200,7 @@ Sorted Cells::sort(const neighbors::Packed& points, const neighbors::Request& r)
         spheres[p] = in[i];
         ids[p] = in_ids[i];
         order[p] = static_cast<std::uint32_t>(i);
+        ranks[i] = p;
     });
     return {grid, spheres, order, starts};
 }

@@ -56,17 +56,6 @@ struct AxisRange {
     }
 };
 
-/// Their buckets: `head` from the first on and, past the end of the axis, `tail` from 0 on.
-struct BucketRun {
-    std::int32_t first, head, tail;
-    GR_HD BucketRun(const GridAxis& a, float x, float w) {
-        const AxisRange cells(a, x, w);
-        first = a.bucket(cells.first);
-        head = cells.count < a.buckets - first ? cells.count : a.buckets - first;
-        tail = cells.count - head;
-    }
-};
-
 struct Grid {
     GridAxis x, y, z;
 
@@ -86,8 +75,9 @@ struct Grid {
         const Rows<cut> rows(*this, s, w);
         std::int32_t bz = z.bucket(rows.z.first);
         for (std::int32_t k = 0; k < rows.z.count; ++k, bz = bz + 1 == z.buckets ? 0 : bz + 1) {
+            const float left = rows.left_of_layer(k);
             std::int32_t by = y.bucket(rows.y.first);
-            for (std::int32_t j = 0; j < rows.y.count; ++j, by = by + 1 == y.buckets ? 0 : by + 1) rows.visit(j, by, k, bz, visit);
+            for (std::int32_t j = 0; j < rows.y.count; ++j, by = by + 1 == y.buckets ? 0 : by + 1) rows.visit(rows.left_of_row(left, j), by, bz, visit);
         }
     }
     /// Every `shares`-th row of them, from row `share` on: what one of several threads looks at.
@@ -99,7 +89,7 @@ struct Grid {
         for (std::uint32_t r = share; r < all; r += shares) {
             const auto j = static_cast<std::int32_t>(r % count_y), k = static_cast<std::int32_t>(r / count_y);
             const std::int32_t by = first_y + j, bz = first_z + k;
-            rows.visit(j, by < y.buckets ? by : by - y.buckets, k, bz < z.buckets ? bz : bz - z.buckets, visit);
+            rows.visit(rows.left_of_row(rows.left_of_layer(k), j), by < y.buckets ? by : by - y.buckets, bz < z.buckets ? bz : bz - z.buckets, visit);
         }
     }
 
@@ -111,28 +101,47 @@ private:
         Sphere s;
         float pad;   ///< with the predicate's own rounding
         bool round;  ///< the runs are cut; only where squares keep their digits
-        AxisRange y, z;
-        BucketRun whole;
+        AxisRange x, y, z;
+        std::int32_t first_x;
 
         GR_HD Rows(const Grid& g, const Sphere& sphere, float w)
-            : grid(g), s(sphere), pad(w * 1.000001f + 1e-37f), round(cut && pad > 1e-15f && pad < 1e15f), y(g.y, s.y, pad), z(g.z, s.z, pad),
-              whole(g.x, s.x, pad) {}
+            : grid(g), s(sphere), pad(w * 1.000001f + 1e-37f), round(cut && pad > 1e-15f && pad < 1e15f), x(g.x, s.x, pad), y(g.y, s.y, pad), z(g.z, s.z, pad),
+              first_x(g.x.bucket(x.first)) {}
+
+        /// Square of half the width that the sphere has in layer k, at least, and in row j of a layer; negative: none.
+        GR_HD float left_of_layer(std::int32_t k) const { return 1.000001f * (pad * pad) - squared_distance(grid.z, z, s.z, k); }
+        GR_HD float left_of_row(float left, std::int32_t j) const { return left - squared_distance(grid.y, y, s.y, j); }
+        GR_HD static float squared_distance(const GridAxis& axis, const AxisRange& range, float at, std::int32_t k) {
+            if (!cut || range.all) return 0;
+            const float d = axis.distance(at, range.first + k);
+            return d * d;
+        }
 
         template <class Visit>
-        GR_HD void visit(std::int32_t j, std::int32_t by, std::int32_t k, std::int32_t bz, const Visit& visit_run) const {
-            const float dz = !cut || z.all ? 0.0f : grid.z.distance(s.z, z.first + k);
-            const float dy = !cut || y.all ? 0.0f : grid.y.distance(s.y, y.first + j);
-            const float left = 1.000001f * (pad * pad) - (dy * dy + dz * dz);
-            if (round && left < 0) return;
-            const BucketRun run = round ? BucketRun(grid.x, s.x, smaller(sqrtf(left) * 1.000001f, pad)) : whole;
+        GR_HD void visit(float left, std::int32_t by, std::int32_t bz, const Visit& visit_run) const {
+            std::int32_t first = first_x, count = x.count;
+            if (round) {
+                if (left < 0) return;
+                if (!x.all) {  // cells are counted from the whole run's first, which has been brought into the axis
+                    const AxisRange run(grid.x, s.x, smaller(sqrtf(left) * 1.000001f, pad));
+                    first += run.first - x.first;
+                    if (first >= grid.x.buckets) first -= grid.x.buckets;
+                    count = run.count;
+                }
+            }
+            // Past the end of the axis a run goes on from its start.
+            const std::int32_t room = grid.x.buckets - first, head = count < room ? count : room;
             const std::uint32_t start = grid.row(by, bz);
-            visit_run(start + run.first, start + run.first + run.head);
-            if (run.tail) visit_run(start, start + run.tail);
+            visit_run(start + first, start + first + head);
+            if (head < count) visit_run(start, start + (count - head));
         }
     };
 };
 
-/// Cells about 2 mean reaches wide, at most about two buckets a point.
-Grid make_grid(std::size_t points, float mean_reach, const Vec3f& lower, const Vec3f& upper, const Vec3f& box_lower, const Vec3f& period);
+/// Cells about 2 mean reaches wide, along x down to 1 / `cut_x` (a power of 2) of that where the buckets, about two a point, suffice.
+Grid make_grid(std::size_t points, float mean_reach, const Vec3f& lower, const Vec3f& upper, const Vec3f& box_lower, const Vec3f& period, int cut_x);
+
+/// Of a search. Along x, where runs lie, narrow cells cost no more rows and spare a query a quarter of its points.
+inline constexpr int search_cut_x = 4;
 
 }  // namespace grainray::neighbors

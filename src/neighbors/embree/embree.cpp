@@ -48,6 +48,7 @@ struct RayPairs {
     View<const std::uint32_t> ids;
 
     std::uint32_t index(std::size_t k) const { return static_cast<std::uint32_t>(k); }
+    std::uint32_t partner(std::uint32_t place) const { return place; }
     template <class Emit>
     void find(std::size_t k, const Emit& emit) const {
         const Sphere a = boxes.points[k];
@@ -64,6 +65,7 @@ struct RayQueries {
     View<const Sphere> queries;
 
     std::uint32_t index(std::size_t k) const { return static_cast<std::uint32_t>(k); }
+    std::uint32_t partner(std::uint32_t place) const { return place; }
     template <class Emit>
     void find(std::size_t k, const Emit& emit) const {
         const Sphere a = queries[k];
@@ -77,14 +79,14 @@ public:
 
     void pairs(const neighbors::Packed& p, const neighbors::Request& r, NeighborList& list) override {
         const Boxes boxes = build(p, p, r);
-        if (r.periodic()) build_list(RayPairs<true>{boxes, p.ids.view()}, p.size(), p.size(), r, list);
-        else build_list(RayPairs<false>{boxes, p.ids.view()}, p.size(), p.size(), r, list);
+        if (r.periodic()) build_list(RayPairs<true>{boxes, p.ids.view()}, p.size(), Mirror(r), r.ascending, list);
+        else build_list(RayPairs<false>{boxes, p.ids.view()}, p.size(), Mirror(r), r.ascending, list);
         tree_.check();
     }
     void queries(const neighbors::Packed& q, const neighbors::Packed& p, const neighbors::Request& r, NeighborList& list) override {
         const Boxes boxes = build(q, p, r);
-        if (r.periodic()) build_list(RayQueries<true>{boxes, q.spheres.view()}, q.size(), q.size(), r, list);
-        else build_list(RayQueries<false>{boxes, q.spheres.view()}, q.size(), q.size(), r, list);
+        if (r.periodic()) build_list(RayQueries<true>{boxes, q.spheres.view()}, q.size(), Mirror(r), r.ascending, list);
+        else build_list(RayQueries<false>{boxes, q.spheres.view()}, q.size(), Mirror(r), r.ascending, list);
         tree_.check();
     }
     std::size_t memory_bytes() const override { return tree_.memory_bytes(); }

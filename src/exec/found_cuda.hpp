@@ -1,0 +1,191 @@
+// Rows of what was found, on CUDA: a table takes up to `places` entries of each row as they are found, so that one search is
+// enough; what finds no place there is left over and joins its row when the list is filled.
+#pragma once
+
+#include "exec/cuda.hpp"
+#include "grainray/neighbors.hpp"
+
+namespace grainray::cuda {
+
+/// An entry of a row.
+struct LeftOver {
+    std::uint32_t row_plus_one;  ///< 0: none
+    std::uint32_t entry;
+};
+
+struct Table {
+    static constexpr std::uint32_t places = 28;
+    View<std::uint32_t> entries;     ///< place p of row i at p * rows + i
+    View<std::uint8_t> own;          ///< entries of a row that its own point found; they stand first
+    View<std::uint32_t> counts;      ///< entries of a row, with those of other points that found no place
+    View<LeftOver> left_over;
+    std::uint64_t* left_over_count;  ///< more than there is room for: all of it must be done again
+
+    GR_HD std::uint32_t& at(std::size_t row, std::uint32_t place) const { return entries[place * counts.size + row]; }
+    GR_HD std::uint32_t held(std::size_t row) const { return counts[row] < places ? counts[row] : places; }
+    GR_HD void leave(std::uint64_t slot, std::uint32_t row, std::uint32_t entry) const {
+        if (slot < left_over.size) left_over[slot] = {row + 1, entry};
+    }
+};
+
+/// What one thread leaves over. It takes room for 16 at a time: one counter that all add to one by one would be waited for.
+struct LeftOvers {
+    const Table& table;
+    std::uint64_t slot = 0, end = 0;
+
+    GR_HD void add(std::uint32_t row, std::uint32_t entry) {
+        constexpr std::uint64_t room = 16;
+        if (slot == end) {
+            slot = atomic_add(table.left_over_count, room);
+            end = slot + room;
+        }
+        table.leave(slot++, row, entry);
+    }
+    template <class Finder, class Tells>
+    GR_HD void add_found(const Finder& finder, std::uint32_t i, std::uint32_t place, const Tells& tells) {
+        const std::uint32_t j = finder.partner(place);
+        add(i, j);
+        if (tells(i, j)) add(j, i);
+    }
+};
+
+template <class Finder>
+constexpr bool knows_wide = requires(const Finder& f) { f.wide(std::size_t{}); };
+
+template <class Finder>
+GR_HD bool is_wide([[maybe_unused]] const Finder& finder, [[maybe_unused]] std::size_t k) {
+    if constexpr (knows_wide<Finder>) return finder.some_wide && finder.wide(k);
+    else return false;
+}
+
+/// What the items find, in their own rows. Those who find more than a row has places for search again for the rest.
+template <class Finder, class Tells>
+void find_own(const Finder& finder, std::size_t items, const Tells& tells, const Table& table) {
+    for_each(items, [=] GR_HD(std::size_t k) {
+        const std::uint32_t i = finder.index(k);
+        std::uint32_t* const row = &table.at(i, 0);
+        const std::size_t stride = table.counts.size;
+        std::uint32_t found = 0, *next = row;
+        if (!is_wide(finder, k))
+            finder.find(k, [&](std::uint32_t place, bool hit) {
+                if (hit && found < Table::places) *next = finder.partner(place);
+                found += hit;
+                next += hit ? stride : 0;
+            });
+        const std::uint32_t own = found < Table::places ? found : Table::places;
+        table.own[i] = static_cast<std::uint8_t>(own);
+        table.counts[i] = own;
+        if (found <= Table::places) return;
+        LeftOvers rest{table};
+        std::uint32_t seen = 0;
+        finder.find(k, [&](std::uint32_t place, bool hit) {
+            if (hit && seen++ >= Table::places) rest.add_found(finder, i, place, tells);
+        });
+    });
+}
+
+/// Wide items are looked at by many threads, which leave all over.
+template <class Finder, class Tells>
+void find_wide(const Finder& finder, std::size_t items, const Tells& tells, const Table& table) {
+    Array<std::uint32_t> listed(device, items + 1);  // how many items are wide, then which
+    const auto wide = listed.view();
+    for_each(1, [=] GR_HD(std::size_t) { wide[0] = 0; });
+    for_each(items, [=] GR_HD(std::size_t k) {
+        if (finder.wide(k)) wide[1 + atomic_add(&wide[0], 1u)] = static_cast<std::uint32_t>(k);
+    });
+    for_each_in_blocks(wide.data, [=] GR_HD(std::size_t w, std::uint32_t share, std::uint32_t shares) {
+        const std::uint32_t k = wide[1 + w], i = finder.index(k);
+        LeftOvers rest{table};
+        finder.find_share(k, share, shares, [&](std::uint32_t place, bool hit) { if (hit) rest.add_found(finder, i, place, tells); });
+    });
+}
+
+/// Each row's own entries into the rows of the others, after theirs. Four at a time, so that they wait for memory together.
+template <class Tells>
+void tell_others(const Tells& tells, const Table& table) {
+    constexpr std::uint32_t together = 4;
+    for_each(table.counts.size, [=] GR_HD(std::size_t k) {
+        const auto i = static_cast<std::uint32_t>(k);
+        const std::uint32_t own = table.own[i];
+        for (std::uint32_t first = 0; first < own; first += together) {
+            std::uint32_t row[together], place[together];
+            for (std::uint32_t t = 0; t < together; ++t) {
+                row[t] = first + t < own ? table.at(i, first + t) : i;
+                if (row[t] != i && !tells(i, row[t])) row[t] = i;  // no point is its own neighbour
+                if (row[t] != i) place[t] = atomic_add(&table.counts[row[t]], 1u);
+            }
+            for (std::uint32_t t = 0; t < together; ++t) {
+                if (row[t] == i) continue;
+                if (place[t] < Table::places) table.at(row[t], place[t]) = i;
+                else table.leave(atomic_add(table.left_over_count, std::uint64_t{1}), row[t], i);
+            }
+        }
+    });
+}
+
+template <class Visit>
+void for_each_left_over(const Table& table, const Visit& visit) {
+    for_each(table.left_over.size, [=] GR_HD(std::size_t s) {
+        if (s < *table.left_over_count && table.left_over[s].row_plus_one) visit(table.left_over[s].row_plus_one - 1, table.left_over[s].entry);
+    });
+}
+
+/// The places of a block's rows, put in order in shared memory so that they are written side by side.
+template <unsigned rows>
+__global__ void fill_from_places(Table table, const std::uint64_t* offsets, std::uint32_t* entries) {
+    __shared__ std::uint32_t ordered[rows * Table::places];
+    const std::size_t n = table.counts.size, first = std::size_t{blockIdx.x} * rows, i = first + threadIdx.x, last = min(first + rows, n);
+    const std::uint32_t held = i < n ? table.held(i) : 0;
+    const std::uint64_t start = offsets[min(i, n)], begin = offsets[first];
+    const bool in_order = !__syncthreads_or(i < n && offsets[i + 1] - start != held);  // else left-overs stand between
+    std::uint32_t* const row = in_order ? ordered + (start - begin) : entries + start;
+    for (std::uint32_t p = 0; p < held; ++p) row[p] = table.at(i, p);
+    if (i < n) table.counts[i] = held;
+    if (!in_order) return;
+    __syncthreads();
+    for (std::uint64_t e = threadIdx.x; e < offsets[last] - begin; e += rows) entries[begin + e] = ordered[e];
+}
+
+/// The table and what it left over become rows. Returns how much that was: more than there is room for, and nothing is done.
+inline std::uint64_t fill_rows(const Table& table, NeighborList& list) {
+    const std::size_t n = table.counts.size;
+    list.offsets.resize_discard(n + 1);
+    const auto offsets = list.offsets.view();
+    for_each(n + 1, [=] GR_HD(std::size_t i) { offsets[i] = i < n ? table.held(i) : 0; });
+    for_each_left_over(table, [=] GR_HD(std::uint32_t row, std::uint32_t) { atomic_add(&offsets[row], std::uint64_t{1}); });
+    const std::uint64_t total = exclusive_scan(offsets), left = fetch(table.left_over_count);
+    if (left > table.left_over.size) return left;
+    list.neighbors.resize_discard_slack(total);
+    const auto entries = list.neighbors.view();
+    constexpr unsigned together = 128;
+    if (n) fill_from_places<together><<<static_cast<unsigned>((n + together - 1) / together), together>>>(table, offsets.data, entries.data);
+    check(cudaGetLastError(), "kernel launch");
+    if (left)
+        for_each_left_over(table, [=] GR_HD(std::uint32_t row, std::uint32_t entry) { entries[offsets[row] + atomic_add(&table.counts[row], 1u)] = entry; });
+    return left;
+}
+
+template <class Finder, class Tells>
+void collect(const Finder& finder, std::size_t items, const Tells& tells, NeighborList& list) {
+    static_assert(std::is_trivially_copyable_v<Finder>);
+    static double usual = 0;  // left over of an item, lately
+    Array<std::uint32_t> entries(device, items * Table::places), counts(device, items);
+    Array<std::uint8_t> own(device, items);
+    Array<std::uint64_t> left_over_count(device, 1);
+    for (auto room = static_cast<std::size_t>((0.2 + 1.5 * usual) * static_cast<double>(items)) + 1024;;) {
+        Array<LeftOver> left_over(device, room);
+        left_over.clear_bytes();
+        left_over_count.clear_bytes();
+        const Table table{entries.view(), own.view(), counts.view(), left_over.view(), left_over_count.data()};
+        find_own(finder, items, tells, table);
+        if constexpr (knows_wide<Finder>)
+            if (finder.some_wide) find_wide(finder, items, tells, table);
+        if (tells.some) tell_others(tells, table);
+        const std::uint64_t left = fill_rows(table, list);
+        if (items) usual = std::max(0.9 * usual, static_cast<double>(left) / static_cast<double>(items));
+        if (left <= room) return;
+        room = left;
+    }
+}
+
+}  // namespace grainray::cuda
