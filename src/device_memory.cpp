@@ -57,7 +57,7 @@ std::vector<MemoryPart> forecast_device_memory(const Scene& scene, double n, con
     // The moments: the new list is there and the histories of the old one still are; the search; a step.
     const std::vector<std::vector<MemoryPart>> moments{
         {lists[0], {"histories carried over", touching + index}},
-        {{"histories carried over", touching + index}, {"search", n * (92 + 97 + 12 + sizeof(std::uint32_t) * planned_entries * 1.1)}},
+        {{"histories carried over", touching + index}, {"search", n * (96 + 121 + 12 + sizeof(std::uint32_t) * planned_entries * 1.1)}},
         {lists[0], {"next state", n * (sizeof(Near) + sizeof(Body) + (periodic ? sizeof(Far) : 0))}}};
     const auto most = std::max_element(moments.begin(), moments.end(), [](const auto& a, const auto& b) { return sum(a) < sum(b); });
     std::vector<MemoryPart> parts = always;

@@ -130,20 +130,22 @@ void for_each_left_over(const Table& table, const Visit& visit) {
     });
 }
 
-/// The places of a block's rows, put in order in shared memory so that they are written side by side.
+/// The places of a block's rows, put in order in shared memory where they fit, so that they are written side by side; what stands
+/// between them then is overwritten by what was left over.
 template <unsigned rows>
 __global__ void fill_from_places(Table table, const std::uint64_t* offsets, std::uint32_t* entries) {
-    __shared__ std::uint32_t ordered[rows * Table::places];
-    const std::size_t n = table.counts.size, first = std::size_t{blockIdx.x} * rows, i = first + threadIdx.x, last = min(first + rows, n);
+    constexpr unsigned room = rows * Table::places;
+    __shared__ std::uint32_t ordered[room];
+    const std::size_t n = table.counts.size, first = std::size_t{blockIdx.x} * rows, i = first + threadIdx.x;
     const std::uint32_t held = i < n ? table.held(i) : 0;
-    const std::uint64_t start = offsets[min(i, n)], begin = offsets[first];
-    const bool in_order = !__syncthreads_or(i < n && offsets[i + 1] - start != held);  // else left-overs stand between
-    std::uint32_t* const row = in_order ? ordered + (start - begin) : entries + start;
+    const std::uint64_t start = offsets[min(i, n)], begin = offsets[first], end = offsets[min(first + rows, n)];
+    const bool fits = end - begin <= room;
+    std::uint32_t* const row = fits ? ordered + (start - begin) : entries + start;
     for (std::uint32_t p = 0; p < held; ++p) row[p] = table.at(i, p);
     if (i < n) table.counts[i] = held;
-    if (!in_order) return;
+    if (!fits) return;
     __syncthreads();
-    for (std::uint64_t e = threadIdx.x; e < offsets[last] - begin; e += rows) entries[begin + e] = ordered[e];
+    for (std::uint64_t e = threadIdx.x; e < end - begin; e += rows) entries[begin + e] = ordered[e];
 }
 
 /// The table and what it left over become rows. Returns how much that was: more than there is room for, and nothing is done.
