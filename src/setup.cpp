@@ -162,7 +162,7 @@ Simulation::Impl::Impl(const Scene& s, const SimulationOptions& o, const Positio
     for (const ParticleStream& stream : scene.streams) smallest_radius = std::min(smallest_radius, grainray::smallest_radius(stream.size));
     state.quanta = Quanta::for_scale(stiffest, largest);
     constants = {static_cast<float>(scene.dt), convert<float>(scene.gravity), static_cast<float>(scene.contact.mass_damping)};
-    tuner = IntervalTuner(scene.search.interval, scene.search.skin, options.device == Device::cpu ? 0.2 : 0.6);
+    tuner = IntervalTuner(scene.search.interval, scene.search.skin);
     margin_rule.least = static_cast<float>(tuner.skin());
     margin_rule.interval = static_cast<float>(tuner.interval());
     margin_rule.most_units = static_cast<float>(largest / scale.unit);

@@ -62,9 +62,17 @@ void Simulation::Impl::skip(std::uint64_t steps) {
 }
 
 void Simulation::Impl::tune_interval() {
-    tuner.finished({static_cast<double>(state.age.steps), static_cast<double>(state.grains.partners.size()), static_cast<double>(state.size()), state.age.margin,
-                    state.age.steps < state.age.limit, profile.neighbors - list_start.neighbors,
-                    profile.contacts + profile.fused - list_start.contacts - list_start.fused});
+    IntervalTuner::Life life{static_cast<double>(state.age.steps), static_cast<double>(state.age.limit), static_cast<double>(state.grains.partners.size()),
+                             static_cast<double>(state.size()), state.age.widening, profile.neighbors - list_start.neighbors,
+                             profile.contacts + profile.fused - list_start.contacts - list_start.fused};
+    if (life.early() && tuner.looks()) {
+        const Leaver leaver = stage.list_end(state, constants);
+        if (leaver.margin < 0.999f * state.age.widest) {  // else no knob would have widened it
+            life.leaver_margin = margin_rule.trigger * leaver.margin / leaver.radius;
+            life.leaver_speed = leaver.speed / leaver.radius;
+        }
+    }
+    tuner.finished(life);
     margin_rule.interval = static_cast<float>(tuner.interval());
     margin_rule.least = static_cast<float>(tuner.skin());
     usual_life += 0.3 * (state.age.steps - usual_life);

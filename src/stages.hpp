@@ -28,6 +28,9 @@ struct Stages {
     /// they end early where the list is used up. Null: step by step.
     std::uint32_t (*fused)(State&, ContactLaw, const StepConstants&, float trigger, std::uint32_t steps);
 
+    /// Who has moved farthest for its margin since the list was made.
+    Leaver (*list_end)(const State&, const StepConstants&);
+
     /// The pairs that touch now, row after row in the order of the list's rows.
     void (*touching)(const State&, ContactList& out);
     ListFigures (*list_figures)(const State&);

@@ -40,6 +40,8 @@ struct ListAge {
     std::uint32_t limit = 0;  ///< shear between frames and moving planes are covered for this many steps
     bool outdated = true;
     double margin = 0;        ///< margins of all particles over their radii
+    double widening = 0;      ///< the same of what reaches have beyond the radii: margins and shear
+    float widest = 0;         ///< margin that no particle may exceed, units
 };
 
 struct State {
@@ -87,6 +89,13 @@ struct MarginRule {
     float interval = 20;      ///< steps the list is meant to last
     float most_units = 0;     ///< the largest radius; listed pairs stay within 13 of them, and near words hold 16
     float trigger = 1;        ///< displacement / margin that outdates the list: 1 safe, 2 published
+};
+
+/// The particle that has moved farthest for its margin.
+struct Leaver {
+    float share = 0;               ///< displacement over margin
+    float margin = 0, radius = 0;  ///< units
+    float speed = 0;               ///< at which it leaves where it was when the list was made, units a step
 };
 
 /// Means over the particles.

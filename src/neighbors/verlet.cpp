@@ -131,6 +131,15 @@ double mean_margin(View<const Near> near, View<const Near> built) {
     return w.radii ? static_cast<double>(w.margins) / static_cast<double>(w.radii) : 0;
 }
 
+/// What reaches have beyond the radii, of all over radii of all.
+double mean_widening(View<const Near> near, View<const neighbors::Sphere> spheres, double unit) {
+    const auto to_units = static_cast<float>(1 / unit);
+    const Widths w = reduce(near.size, Widths{0, 0}, [=] GR_HD(std::size_t i) {
+        return Widths{static_cast<std::int64_t>(spheres[i].reach * to_units) - near[i].radius, near[i].radius};
+    }, AddWidths{});
+    return w.radii ? static_cast<double>(w.margins) / static_cast<double>(w.radii) : 0;
+}
+
 /// Floats for the search, relative to the periodic box where there is one; reach comes later.
 void place_points(const State& s, View<neighbors::Sphere> spheres) {
     const auto near = s.particles.near.view();
@@ -188,6 +197,8 @@ void margins(State& s, const StepConstants& constants, const MarginRule& rule, A
         spheres[i].reach = reach * 1.000002f + longest * 4e-7f;
     });
     s.age.margin = mean_margin(near, built);
+    s.age.widening = mean_widening(near, spheres, unit);
+    s.age.widest = widest * rule.most_units;
 }
 
 }  // namespace grainray::GRAINRAY_EXEC

@@ -4,7 +4,6 @@
 #include <numeric>
 
 #include "grainray/simulation.hpp"
-#include "neighbors/interval.hpp"
 
 using namespace grainray;
 
@@ -36,21 +35,3 @@ TEST(DeviceMemory, GrowsWithTheParticlesAndWithWhatTheSceneAdds) {
     EXPECT_NEAR(forecast(ground, equal, "cells", 0, 1e6) - forecast(ground, equal), 8e6, 0.1 * 8e6);
 }
 
-TEST(IntervalTuner, MakesListsShorterThatBecameTooLarge) {
-    IntervalTuner tuner;
-    const double interval = tuner.interval(), skin = tuner.skin();
-    tuner.shorten(2 * interval, 2 * skin);
-    EXPECT_EQ(tuner.interval(), interval);
-    EXPECT_EQ(tuner.skin(), skin);
-    tuner.shorten(0.5 * interval, 0.5 * skin);
-    EXPECT_EQ(tuner.interval(), 0.5 * interval);
-    EXPECT_EQ(tuner.skin(), 0.5 * skin);
-    for (int list = 0; list < 3; ++list) tuner.finished({0.5 * interval, 1000, 100, 0.2, false, 1e-1, 1e-6});  // dear to make, cheap to use
-    EXPECT_GT(tuner.interval(), 0.5 * interval);  // it tries again, in small steps
-    EXPECT_LT(tuner.interval(), 0.6 * interval);
-
-    IntervalTuner fixed(30, 0.1);
-    fixed.shorten(10, 0.05);
-    EXPECT_EQ(fixed.interval(), 30);
-    EXPECT_EQ(fixed.skin(), 0.1);
-}

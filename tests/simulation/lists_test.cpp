@@ -1,6 +1,5 @@
 // A list may be old but never wrong: scenes made to outrun it are compared with runs that search at every step.
 #include "devices.hpp"
-#include "neighbors/interval.hpp"
 #include "scenes.hpp"
 
 namespace grainray::test {
@@ -106,55 +105,6 @@ TEST(Trigger, PublishedWaitsLongerAndMayMiss) {
     safe.run(200);
     published.run(200);
     EXPECT_LE(published.search().rebuilds, safe.search().rebuilds);
-}
-
-/// A stand-in for a run whose lists always reach their limit: margins are the skin and 0.01 r a step, entries grow as (1 + margin)^3, an
-/// entry costs 1 a step, making a list 3.4 a particle and 1 an entry, times 60; clocks are noisy.
-struct StandIn {
-    double particles = 1000, touching = 2000;
-    double entries(double margin) const { return touching * std::pow(1 + margin, 3); }
-    double update(double margin) const { return 60 * (3.4 * particles + entries(margin)); }
-    double cost(double interval) const {  // of a step, with hardly any skin
-        const double margin = 0.01 * interval;
-        return update(margin) / interval + entries(margin);
-    }
-};
-
-TEST(IntervalTuner, SettlesRoundTheOptimum) {
-    const StandIn world;
-    IntervalTuner tuner(0, 0, 1);
-    double sum = 0, least = 1e300;
-    for (int k = 0; k < 400; ++k) {
-        const double n = std::floor(tuner.interval()), margin = tuner.skin() + 0.01 * n, noise = k % 3 ? 0.7 : 1.6;
-        tuner.finished({n, world.entries(margin), world.particles, margin, false, noise * world.update(margin), world.entries(margin) * n});
-        if (k >= 100) sum += world.cost(tuner.interval());
-    }
-    for (double n = 4; n <= 200; ++n) least = std::min(least, world.cost(n));
-    EXPECT_LT(sum / 300, 1.02 * least);
-    EXPECT_LT(tuner.skin(), 0.011);  // nobody leaves early
-}
-
-TEST(IntervalTuner, IgnoresAListWhoseTimesWereTakenAway) {  // a caller may set the profile to zero
-    IntervalTuner tuner;
-    const double interval = tuner.interval(), skin = tuner.skin();
-    tuner.finished({20, 1000, 100, 0.1, false, -5.0, -3.0});
-    tuner.finished({20, 1000, 100, 0.1, true, -5.0, 0.1});
-    EXPECT_EQ(tuner.interval(), interval);
-    EXPECT_EQ(tuner.skin(), skin);
-}
-
-TEST(IntervalTuner, WidensMarginsWhereListsEndEarlyAndCostMuch) {
-    IntervalTuner tuner, dear;
-    for (int k = 0; k < 20; ++k) {
-        tuner.finished({10, 3000, 1000, tuner.skin(), true, 10, 0.1});
-        dear.finished({10, 3000, 1000, dear.skin(), true, 0.01, 10});
-    }
-    EXPECT_GT(tuner.skin(), 0.2);
-    EXPECT_LT(dear.skin(), 0.02);
-    IntervalTuner fixed(33, 0.1);
-    fixed.finished({10, 3000, 1000, 0.1, true, 10, 0.1});
-    EXPECT_EQ(fixed.interval(), 33);
-    EXPECT_EQ(fixed.skin(), 0.1);
 }
 
 TEST(Lists, ACoherentFallNeedsFewRebuilds) {
