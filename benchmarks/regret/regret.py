@@ -1,11 +1,12 @@
 #!/usr/bin/python3
 """How much time `auto` loses against the best fixed choice, over whole runs.
 
-  regret.py GRAINRAY [--device cpu|cuda] [--repeats 3] [--scenes NAME,...] [--json FILE] [--share S]
+  regret.py GRAINRAY [--device cpu|cuda] [--repeats 3] [--scenes NAME,...] [--json FILE] [--share S] [--against CHOICE;...]
 
 Each scene is run with everything chosen by the program and with each fixed choice of search, interval and skin, in turns. The
 figure of a run is the time of its start and steps, the least of the repeats: of the processor on a CPU (one thread), of the clock
-on a GPU. Regret is time of auto over the least of all fixed choices, less 1. --share shortens all runs, to try things.
+on a GPU. Regret is time of auto over the least of all fixed choices, less 1. --share shortens all runs, to try things, and
+--against leaves out all fixed choices but those named, as in the table ("cells;cells, skin 0.1").
 """
 import argparse
 import json
@@ -66,23 +67,27 @@ def main():
     parser.add_argument("--repeats", type=int, default=3)
     parser.add_argument("--scenes", default="")
     parser.add_argument("--share", type=float, default=1)
+    parser.add_argument("--against", default="")
     parser.add_argument("--json")
     arguments = parser.parse_args()
     scenes = CPU if arguments.device == "cpu" else CUDA
     if arguments.scenes:
         scenes = {name: scenes[name] for name in arguments.scenes.split(",")}
+    fixed = [c for c in FIXED if not arguments.against or label(c) in arguments.against.split(";")]
+    if not fixed:
+        parser.error("--against: none of these is a fixed choice; there are: " + "; ".join(map(label, FIXED)))
     rows = []
     with tempfile.TemporaryDirectory() as folder:
         subprocess.run([pathlib.Path(arguments.grainray).resolve(), "terrain", "flume"], check=True, cwd=folder, stdout=subprocess.DEVNULL)
         for name, (scene, steps, keys) in scenes.items():
             times = {}
             for _ in range(arguments.repeats):
-                for choice in [("auto", 0, 0)] + FIXED:
+                for choice in [("auto", 0, 0)] + fixed:
                     time, result = seconds(arguments, scene, steps, keys, choice, folder)
                     times.setdefault(choice, []).append(time)
                     if choice[0] == "auto":
                         auto = result
-            best = min(FIXED, key=lambda c: min(times[c]))
+            best = min(fixed, key=lambda c: min(times[c]))
             regret = min(times[("auto", 0, 0)]) / min(times[best]) - 1
             rows.append({"scene": name, "particles": auto["particles"], "steps": auto["steps"], "auto": auto["search"], "regret": regret, "best": label(best),
                          "seconds": {label(c): t for c, t in times.items()}})
