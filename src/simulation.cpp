@@ -66,6 +66,7 @@ void Simulation::Impl::tune_interval() {
                              static_cast<double>(state.size()), state.age.widening, profile.neighbors - list_start.neighbors,
                              profile.contacts + profile.fused - list_start.contacts - list_start.fused};
     if (life.early() && tuner.looks()) {
+        Timed timed(profile.neighbors);
         const Leaver leaver = stage.list_end(state, constants);
         if (leaver.margin < 0.999f * state.age.widest) {  // else no knob would have widened it
             life.leaver_margin = margin_rule.trigger * leaver.margin / leaver.radius;

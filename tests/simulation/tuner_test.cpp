@@ -91,6 +91,27 @@ TEST(IntervalTuner, MeasuresWhatNoModelKnows) {  // a boulder's row grows with t
     EXPECT_GT(a.interval, 1.2 * b.interval);
 }
 
+TEST(IntervalTuner, TriesEitherKnobWithoutTheOther) {
+    const World world{0.004, 0, 0.02};
+    IntervalTuner tuner;
+    std::vector<double> intervals, skins;
+    for (std::size_t k = 0; k < 200; ++k) {
+        tuner.finished(world.list(tuner, k));
+        intervals.push_back(std::log(tuner.interval()));
+        skins.push_back(tuner.skin());
+    }
+    double interval_moves = 0, skin_moves = 0, together = 0;
+    for (std::size_t k = 101; k < 200; ++k) {
+        const double a = intervals[k] - intervals[k - 1], b = skins[k] - skins[k - 1];
+        interval_moves += a * a;
+        skin_moves += b * b;
+        together += a * b;
+    }
+    EXPECT_GT(std::sqrt(interval_moves / 99), 0.1);
+    EXPECT_GT(std::sqrt(skin_moves / 99), 0.04);
+    EXPECT_LT(std::fabs(together), 0.5 * std::sqrt(interval_moves * skin_moves));
+}
+
 TEST(IntervalTuner, NarrowsWhereWiderMarginsAreNoUse) {  // whoever leaves has the widest margin there is
     IntervalTuner tuner;
     for (int k = 0; k < 100; ++k) {
@@ -160,8 +181,8 @@ TEST(Slopes, AreThoseOfWhatWasTriedWhateverDrifts) {
     const double corners[4][2] = {{1, 1}, {-1, 1}, {-1, -1}, {1, -1}};
     for (int k = 0; k < 200; ++k) {
         const double a = 0.2 * corners[k % 4][0], b = 0.2 * corners[k % 4][1];
-        slopes.learn(0.3 * a - 0.2 * b + 0.01 * k, {a, b}, {0.5, 0});
-        if (k % 50 == 49) slopes.interrupt();  // what follows stands elsewhere
+        slopes.learn(0.3 * a - 0.2 * b + 0.01 * k + 5 * (k / 4), {a, b}, {0.5, 0});
+        if (k % 4 == 3) slopes.interrupt();  // what follows stands elsewhere
     }
     EXPECT_NEAR(slopes.correction().a, -0.2, 0.03);
     EXPECT_NEAR(slopes.correction().b, -0.2, 0.03);
