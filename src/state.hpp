@@ -42,6 +42,7 @@ struct ListAge {
     double margin = 0;        ///< margins of all particles over their radii
     double widening = 0;      ///< the same of what reaches have beyond the radii: margins and shear
     float widest = 0;         ///< margin that no particle may exceed, units
+    double trigger = 1;       ///< how many of its margins a particle may move
 };
 
 struct State {
@@ -87,7 +88,7 @@ struct MarginRule {
     float least = 0;          ///< of the particle's radius
     float spread = 0.5f;      ///< standard deviations of the surroundings' velocity added to the particle's own speed
     float interval = 20;      ///< steps the list is meant to last
-    float most_units = 0;     ///< the largest radius; listed pairs stay within 13 of them, and near words hold 16
+    float most_units = 0;     ///< the largest radius: bounds margins
     float trigger = 1;        ///< displacement / margin that outdates the list: 1 safe, 2 published
 };
 

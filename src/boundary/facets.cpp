@@ -30,13 +30,13 @@ struct NearFacets {
     View<const Near> built;
     View<const Vec3f> frame;
     View<const SurfaceNow> now;
-    double fine, unit, dt, steps;
+    double fine, unit, dt, steps, trigger;
 
     template <class Visit>
     GR_HD void for_each(std::size_t i, const Visit& visit) const {
-        const Vec3d x = convert<double>(join(near[i], far[i])) * fine;
-        const double own = (static_cast<double>(length(frame[i])) * steps + 2.0 * built[i].radius) * unit +  // 2: trigger "published"
-                           static_cast<double>(length(body[i].velocity)) * dt;
+        // About the middle of the way that the surroundings go.
+        const Vec3d half = convert<double>(frame[i]) * (0.5 * steps * unit), x = convert<double>(join(near[i], far[i])) * fine + half;
+        const double own = length(half) + trigger * built[i].radius * unit + static_cast<double>(length(body[i].velocity)) * dt;
         for (std::uint32_t q = 0; q < shapes.surfaces.size; ++q) {
             const SurfaceNow& s = now[q];
             const double turn = s.reach_spin * (length(x - s.centre) + own);
@@ -49,7 +49,7 @@ struct NearFacets {
 NearFacets near_facets(const State& s, const StepConstants& constants) {
     const Particles& p = s.particles;
     return {shapes_of(s.facets), p.near.view(), p.far.view(), p.body.view(), s.built.view(), s.frame.view(), s.facets.now.view(),
-            p.scale.fine(), p.scale.unit, constants.dt, static_cast<double>(s.age.limit)};
+            p.scale.fine(), p.scale.unit, constants.dt, static_cast<double>(s.age.limit), s.age.trigger};
 }
 
 }  // namespace

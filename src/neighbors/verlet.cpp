@@ -1,12 +1,19 @@
 // Stage: margins. How far each particle may move before the list must be made again, and the points for the search.
 //
-// The world is cut into boxes 8 largest radii wide. The mean velocity U around a box is the frame of the particles in it:
-// motion that the surroundings share is no displacement. A list made for t steps holds while every particle's displacement,
-// less U t, is below its own margin m_i <= k r_max (src/dynamics/integrate.cpp checks each step; k: `widest`), because a pair drifts
-// apart or together by at most m_i + m_j + |U_i - U_j| t, and
-//   in one box or two that touch, the reach r_i + m_i + e_c, e_c = t/2 max |U_c - U_c'| over the boxes around, covers it;
-//   with one box between, 8 r_max lie between: t |U_c - U_c'| <= (6 - 2 k) r_max keeps them apart;
-//   farther away, 16 r_max do: t times the spread of all frames <= (14 - 2 k) r_max keeps them apart.
+// The world is cut into boxes 8 largest radii r wide. Each has a frame U: the mean velocity of the particles in and around it, as if 16
+// more among them moved as all do on average, so that a lone runaway is no frame of its own. Motion that the surroundings share is no
+// displacement. A list made for t steps holds while every particle's displacement, less U t, is below its own margin m
+// (src/dynamics/integrate.cpp checks each step), because a pair drifts together or apart by at most m_i + m_j + t |U_i - U_j|.
+// An ordinary particle has m <= k r, a runaway k r < m <= K r (`ordinary`, `widest`), and t is such that t |U - U'| <= (6 - 2 k) r for
+// boxes that touch or have one box between. e_1 and e_2 are the largest t |U - U'| of a box and those that touch it, and those up to
+// two away; an ordinary particle's reach is r_i + m_i + e_1 / 2, a runaway's r_i + m_i + max(e_1 / 2, e_2). A pair
+//   in one box or two that touch is covered: both reaches have half of what their boxes drift;
+//   with one box between is covered by a runaway's reach, which has all of it; two ordinary ones, 8 r apart, are kept so by
+//   2 r + 2 k r + t |U - U'| <= 8 r;
+//   farther apart, 16 r, is kept so by 2 r + 2 K r + t |U - U'| <= 16 r: t times the spread of all frames <= (14 - 2 K) r.
+// What rounding may move the faces of boxes by (blur) is taken off 8 r and 16 r; wrapped and periodic axes have nearer boxes, never
+// farther ones. A listed pair is never farther apart than 2 r + 4 K r + 3 (6 - 2 k) r = 21.5 r; from 22.6 r on squares of near words
+// would overflow, and from 30 r on images would touch (contacts/pair.hpp).
 // So coherent motion is free, and a lone runaway has a wide margin that nobody else pays for.
 #include "exec/exec.hpp"
 #include "neighbors/cells/grid.hpp"
@@ -23,8 +30,8 @@ struct Sums {
 struct Surroundings {
     Vec3f frame;
     float spread;  ///< standard deviation of the velocity
-    float shear;   ///< 1/2 max |U_c - U_c'| over the boxes that touch
-    float beyond;  ///< max |U_c - U_c'| over the boxes around those
+    float shear;   ///< max |U - U'| over the boxes that touch
+    float beyond;  ///< the same up to two boxes away
 };
 
 struct Boxes {
@@ -49,7 +56,10 @@ struct Boxes {
     }
 };
 
-constexpr float widest = 1.5f;   // margin, largest radii: more for runaways leaves less for frames that differ
+// Largest radii: margins of ordinary particles and of runaways, and how far boxes near each other may drift apart in a list's life.
+constexpr float ordinary = 1.75f, widest = 3, drift = 6 - 2 * ordinary;
+static_assert(2 + 4 * widest + 3 * drift < 22.6f);
+constexpr double typical = 16;   // particles at the mean velocity of all that count as part of any surroundings
 constexpr float fastest = 1e9f;  // units a step; particles beyond it are reported by the integrator
 
 GR_HD inline float held(float v) { return v < fastest ? (v > -fastest ? v : -fastest) : fastest; }
@@ -63,7 +73,13 @@ void sum_boxes(const Boxes& boxes, View<const neighbors::Sphere> spheres, View<c
     });
 }
 
+struct AddSums {
+    GR_HD Sums operator()(const Sums& a, const Sums& b) const { return {a.count + b.count, a.x + b.x, a.y + b.y, a.z + b.z, a.square + b.square}; }
+};
+
 void look_around(const Boxes& boxes) {
+    const Sums all = reduce(boxes.sums.size, Sums{}, [=] GR_HD(std::size_t c) { return boxes.sums[c]; }, AddSums{});
+    const double share = typical / static_cast<double>(all.count > 0 ? all.count : 1);
     for_each(boxes.sums.size, [=] GR_HD(std::size_t c) {
         double n = 0, x = 0, y = 0, z = 0, square = 0;
         boxes.for_each_around(static_cast<std::uint32_t>(c), 1, [&](std::uint32_t b, int) {
@@ -76,7 +92,8 @@ void look_around(const Boxes& boxes) {
         });
         if (n == 0) return;
         const double vx = x / n / 16, vy = y / n / 16, vz = z / n / 16, variance = square / n * 0x1p20 - (vx * vx + vy * vy + vz * vz);
-        boxes.around[c] = {{static_cast<float>(vx), static_cast<float>(vy), static_cast<float>(vz)}, sqrtf(static_cast<float>(variance > 0 ? variance : 0)), 0, 0};
+        const auto frame = [=](double sum, std::int64_t of_all) { return static_cast<float>((sum + share * static_cast<double>(of_all)) / (n + typical) / 16); };
+        boxes.around[c] = {{frame(x, all.x), frame(y, all.y), frame(z, all.z)}, sqrtf(static_cast<float>(variance > 0 ? variance : 0)), 0, 0};
     });
     for_each(boxes.sums.size, [=] GR_HD(std::size_t c) {
         if (boxes.sums[c].count == 0) return;
@@ -84,19 +101,18 @@ void look_around(const Boxes& boxes) {
         boxes.for_each_around(static_cast<std::uint32_t>(c), 2, [&](std::uint32_t b, int ring) {
             if (boxes.sums[b].count) most[ring - 1] = fmaxf(most[ring - 1], length(boxes.around[b].frame - boxes.around[c].frame));
         });
-        boxes.around[c].shear = 0.5f * most[0];
-        boxes.around[c].beyond = most[1];
+        boxes.around[c].shear = most[0];
+        boxes.around[c].beyond = fmaxf(most[0], most[1]);
     });
 }
 
 /// Largest figures over all boxes.
 struct Extremes {
-    float shear, beyond;
+    float beyond;
     Vec3f slowest, fastest;  ///< of the frames, by axis
 };
 struct JoinExtremes {
     GR_HD Extremes operator()(Extremes a, const Extremes& b) const {
-        a.shear = fmaxf(a.shear, b.shear);
         a.beyond = fmaxf(a.beyond, b.beyond);
         for (int k = 0; k < 3; ++k) {
             a.slowest[k] = fminf(a.slowest[k], b.slowest[k]);
@@ -109,13 +125,13 @@ struct JoinExtremes {
 /// Steps the list may last at most, by the bounds at the head of this file. `radius`: the largest, units; `blur`: what the
 /// faces of the boxes may be off by rounding, radii.
 float longest_life(const Boxes& boxes, float wanted, float radius, float blur) {
-    const Extremes none{0, 0, {fastest, fastest, fastest}, {-fastest, -fastest, -fastest}};
+    const Extremes none{0, {fastest, fastest, fastest}, {-fastest, -fastest, -fastest}};
     const Extremes e = reduce(boxes.sums.size, none, [=] GR_HD(std::size_t c) {
         const Surroundings& a = boxes.around[c];
-        return boxes.sums[c].count ? Extremes{a.shear, a.beyond, a.frame, a.frame} : none;
+        return boxes.sums[c].count ? Extremes{a.beyond, a.frame, a.frame} : none;
     }, JoinExtremes{});
     const float spread = boxes.sums.size ? length(e.fastest - e.slowest) : 0, least = 1e-30f;
-    const float bound = fminf(radius / (e.shear + least), fminf((6 - 2 * widest - blur) * radius / (e.beyond + least), (14 - 2 * widest - blur) * radius / (spread + least)));
+    const float bound = fminf((drift - blur) * radius / (e.beyond + least), (14 - 2 * widest - blur) * radius / (spread + least));
     return fmaxf(1.0f, floorf(fminf(wanted, bound)));
 }
 
@@ -180,8 +196,9 @@ void margins(State& s, const StepConstants& constants, const MarginRule& rule, A
     const float longest = fmaxf(fmaxf(fmaxf(fabsf(s.lower.x), fabsf(s.upper.x)), fmaxf(fabsf(s.lower.y), fabsf(s.upper.y))),
                                 fmaxf(fmaxf(fabsf(s.lower.z), fabsf(s.upper.z)), fmaxf(period.x, fmaxf(period.y, period.z))));
 
-    const float steps = longest_life(boxes, rule.interval, rule.most_units, fminf(longest / largest * 5e-7f, 2.9f));
+    const float steps = longest_life(boxes, rule.interval, rule.most_units, fminf(longest / largest * 5e-7f, drift - 0.1f));
     s.age.limit = static_cast<std::uint32_t>(steps);
+    s.age.trigger = rule.trigger;
 
     const auto near = s.particles.near.view(), built = s.built.view();
     const auto frame = s.frame.view();
@@ -189,16 +206,18 @@ void margins(State& s, const StepConstants& constants, const MarginRule& rule, A
         const Near q = near[i];
         const Surroundings& a = boxes.around[boxes.of(spheres[i])];
         const float own = length(body[i].velocity * to_units - a.frame) + rule.spread * a.spread;
-        const float margin = fminf(own * steps + rule.least * static_cast<float>(q.radius), widest * rule.most_units);
+        const float margin = fminf(own * steps + rule.least * static_cast<float>(q.radius), widest / rule.trigger * rule.most_units);
+        const float drifts = steps * (margin > ordinary * rule.most_units ? fmaxf(0.5f * a.shear, a.beyond) : 0.5f * a.shear);
         built[i] = {q.x, q.y, q.z, static_cast<std::int32_t>(margin)};
         frame[i] = a.frame;
-        const float reach = static_cast<float>((static_cast<double>(q.radius) + built[i].radius + a.shear * steps) * unit);
+        const float reach = static_cast<float>((static_cast<double>(q.radius) + built[i].radius + fminf(drifts, drift * rule.most_units)) * unit);
+        // A list for one step may exceed the drift: it is used where it was made, and nothing drifts.
         // The search is exact for the floats it is given: the last term covers what rounding to them may hide.
         spheres[i].reach = reach * 1.000002f + longest * 4e-7f;
     });
     s.age.margin = mean_margin(near, built);
     s.age.widening = mean_widening(near, spheres, unit);
-    s.age.widest = widest * rule.most_units;
+    s.age.widest = widest / rule.trigger * rule.most_units;
 }
 
 }  // namespace grainray::GRAINRAY_EXEC

@@ -55,6 +55,27 @@ Case periodic_crossing() {
     for (int i = 0; i < 40; ++i) c.add({0.25 * (i % 8) + 0.1, 0.4 + 0.3 * (i / 8), 1 + 0.02 * i}, 0.08, {3.0 * (i % 5), -7.0 * (i % 3), 9.0 * (i % 2)});
     return c;
 }
+/// Blocks that drive at each other with an empty box or two between, and before each a particle that runs ahead. Ten pairs of them, so that
+/// boxes begin at ten places. Runaways have margins of nearly 3 radii then, on one side or on both.
+Case runaways_between_blocks(double gap, double left, double right) {
+    Case c = free_case();
+    c.scene.search.interval = 150;
+    c.scene.search.skin = 0.02;
+    for (int pair = 0; pair < 10; ++pair) {
+        const double x = 0.08 * pair, y = 3.2 * pair;
+        for (int k = 0; k < 64; ++k) {
+            const Vec3d place{0.205 * (k % 4), 0.205 * (k / 4 % 4), 0.205 * (k / 16)};
+            c.add(place + Vec3d{x, y, 0}, 0.1, {2, 0, 0});
+            c.add(place + Vec3d{x + 1.02 + gap, y, 0}, 0.1, {-2, 0, 0});
+        }
+        c.add({x + 0.82, y + 0.3, 0.3}, 0.1, {left, 0, 0});
+        c.add({x + 0.82 + gap, y + 0.32, 0.3}, 0.1, {right, 0, 0});
+    }
+    return c;
+}
+Case runaway_against_a_block() { return runaways_between_blocks(0.87, 5.3, -3.65); }
+Case two_runaways() { return runaways_between_blocks(0.95, 5.3, -5.3); }
+Case runaways_three_boxes_apart() { return runaways_between_blocks(1.65, 5.3, -5.3); }
 Case sizes_one_to_twenty() {
     Case c = column(5, 5, 3);
     for (int i = 0; i < 400; ++i) c.add({0.05 + 0.02 * (i % 40), 0.1 + 0.05 * (i / 40), 1.0 + 0.001 * i}, 0.005, {0.3 * (i % 7), 0, -5});
@@ -71,6 +92,7 @@ struct Adversary {
 };
 const Adversary adversaries[] = {{"head_on", head_on}, {"overtaking", overtaking}, {"sheared_block", sheared_block}, {"turning_pile", turning_pile},
                                  {"runaway_over_a_bed", runaway_over_a_bed}, {"periodic_crossing", periodic_crossing},
+                                 {"runaway_against_a_block", runaway_against_a_block}, {"two_runaways", two_runaways}, {"runaways_three_boxes_apart", runaways_three_boxes_apart},
                                  {"sizes_one_to_twenty", sizes_one_to_twenty}};
 
 class Lists : public ::testing::TestWithParam<std::tuple<Device, Adversary>> {};
