@@ -146,6 +146,16 @@ Cloud two_runaways() {
     c.add({17.5, 4, 4}, {-20 * u, 0, 0});
     return c;
 }
+/// Hardly runaways: margins of 2 to 2.5.
+Cloud two_slow_runaways() {
+    Cloud c;
+    c.add({0, 0, 0}, {u, 0, 0});
+    c.cluster(80, {2, 1, 1}, {7.9, 7, 7}, {u, 0, 0});
+    c.cluster(80, {16.1, 1, 1}, {22, 7, 7}, {-u, 0, 0});
+    c.add({7.99, 4, 4}, {2.3 * u, 0, 0});
+    c.add({16.01, 4, 4}, {-2.3 * u, 0, 0});
+    return c;
+}
 /// With two empty boxes between: nothing but the spread of all frames keeps them apart.
 Cloud far_runaways() {
     Cloud c;
@@ -192,7 +202,7 @@ struct Named {
     int runaways;
 };
 const Named clouds[] = {{"ordinary_head_on", ordinary_head_on, 0}, {"runaway_along", runaway_along, 1}, {"runaway_across", runaway_across, 1},
-                        {"two_runaways", two_runaways, 2}, {"far_runaways", far_runaways, 2}, {"sheared", sheared, 0}};
+                        {"two_runaways", two_runaways, 2}, {"two_slow_runaways", two_slow_runaways, 2}, {"far_runaways", far_runaways, 2}, {"sheared", sheared, 0}};
 
 class Margins : public ::testing::TestWithParam<std::tuple<Device, Named>> {};
 
@@ -238,6 +248,20 @@ TEST(Margins, ALoneRunawayIsNoFrameOfItsOwn) {
     const Made m = make(c, Device::cpu);
     EXPECT_EQ(m.limit, 15u);
     EXPECT_NEAR(m.margin(200), 0.17 * 15 * 16 / 17, 0.05);
+}
+
+TEST(Margins, OfAListForOneStepStayWithinTheNearWords) {  // however fast boxes drift apart
+    Cloud c;
+    c.add({0, 0, 0}, {10, 0, 0});
+    c.cluster(80, {2, 1, 1}, {7.9, 7, 7}, {10, 0, 0});
+    c.cluster(80, {16.1, 1, 1}, {22, 7, 7}, {-10, 0, 0});
+    c.add({0.1, 4, 4}, {30, 0, 0});
+    c.add({22.9, 4, 4}, {-30, 0, 0});
+    const Made m = make(c, Device::cpu);
+    EXPECT_EQ(m.limit, 1u);
+    const Verdict v = judge(c, m);
+    EXPECT_LT(v.deepest, rounding);
+    EXPECT_LT(v.farthest, 22.6);
 }
 
 TEST(Margins, WhatMovesAsOneHasNone) {
