@@ -2,6 +2,7 @@
 #pragma once
 
 #include "exec/cpu.hpp"
+#include "exec/owned_cpu.hpp"
 #include "grainray/neighbors.hpp"
 
 namespace grainray::cpu {
@@ -16,21 +17,16 @@ public:
     template <class Visit>
     void search(const Visit& visit) {
         for_each(kept_.size(), [&](std::size_t c) {
-            std::vector<std::uint32_t> kept(chunk * 16);
-            std::size_t end = 0;
-            const auto put = [&](std::uint32_t value, bool counts) {  // always written: no branch to guess
-                if (end == kept.size()) kept.resize(2 * end);
-                kept[end] = value;
-                end += counts;
-            };
+            Entries kept;
             for (std::size_t k = c * chunk; k < std::min(items_, (c + 1) * chunk); ++k) {
-                const std::size_t start = end;
-                put(0, true);
-                finder_.find(k, [&](std::uint32_t place, bool hit) { put(finder_.partner(place), hit); });
-                kept[start] = static_cast<std::uint32_t>(end - start - 1);
-                visit(finder_.index(k), &kept[start] + 1, kept[start]);
+                const std::size_t start = kept.end;
+                kept.put(0, true);
+                if constexpr (requires { requires Finder::in_runs; }) find_owned(k, kept);
+                else finder_.find(k, [&](std::uint32_t place, bool hit) { kept.put(finder_.partner(place), hit); });
+                kept.all[start] = static_cast<std::uint32_t>(kept.end - start - 1);
+                visit(finder_.index(k), &kept.all[start] + 1, kept.all[start]);
             }
-            kept_[c].assign(kept.begin(), kept.begin() + static_cast<std::ptrdiff_t>(end));  // as small as it can be: all stay until the list is filled
+            kept_[c].assign(kept.all.begin(), kept.all.begin() + static_cast<std::ptrdiff_t>(kept.end));  // as small as it can be: all stay until the list is filled
         }, 1);
     }
     /// The same calls again.
@@ -44,7 +40,43 @@ public:
 
 private:
     static constexpr std::size_t chunk = 256;
+    struct Entries {
+        std::vector<std::uint32_t> all = std::vector<std::uint32_t>(chunk * 16);
+        std::size_t end = 0;
+
+        void make_room(std::size_t more) {
+            if (end + more > all.size()) all.resize(std::max(2 * all.size(), end + more));
+        }
+        void put(std::uint32_t value, bool counts) {  // always written: no branch to guess
+            make_room(1);
+            all[end] = value;
+            end += counts;
+        }
+    };
+
+    /// By runs of points, which are tested many at a time.
+    void find_owned(std::size_t k, Entries& kept) const {
+        constexpr std::size_t most = 64;
+        owned::Run runs[most];
+        const owned::Points searched{finder_.sorted.spheres.data, finder_.sorted_ids.data, finder_.sorted.order.data};
+        std::size_t count = 0, points = 0;
+        const auto flush = [&] {
+            kept.make_room(points + 16);
+            std::uint32_t* const out = &kept.all[kept.end];
+            kept.end += static_cast<std::size_t>(append_(searched, runs, runs + count, finder_.sphere(k), finder_.id(k), out) - out);
+            count = points = 0;
+        };
+        finder_.for_each_run(k, [&](std::uint32_t first, std::uint32_t last) {
+            if (first == last) return;
+            runs[count++] = {first, last};
+            points += last - first;
+            if (count == most) flush();
+        });
+        flush();
+    }
+
     Finder finder_;
+    owned::Append append_ = owned::best();
     std::size_t items_;
     std::vector<std::vector<std::uint32_t>> kept_;  ///< of each item: how many, then which
 };

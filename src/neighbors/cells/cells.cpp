@@ -20,11 +20,16 @@ struct Sorted {
         });
     }
 
+    /// visit(first place, past the last)
+    template <class Visit>
+    GR_HD void for_each_run(const neighbors::Sphere& s, float half_width, const Visit& visit) const {
+        grid.for_each_run<device == Device::cuda>(s, half_width, [&](std::uint32_t first, std::uint32_t last) { visit(starts[first], starts[last]); });
+    }
     template <class Test, class Emit>
     GR_HD void find(const neighbors::Sphere& s, float half_width, const Test& test, const Emit& emit) const {
-        grid.for_each_run<device == Device::cuda>(s, half_width, [&](std::uint32_t first, std::uint32_t last) {
-            if constexpr (device == Device::cuda) visit_pairs(starts[first], starts[last], test, emit);
-            else for (std::uint32_t p = starts[first], end = starts[last]; p < end; ++p) emit(p, test(spheres[p], p));
+        for_each_run(s, half_width, [&](std::uint32_t p, std::uint32_t end) {
+            if constexpr (device == Device::cuda) visit_pairs(p, end, test, emit);
+            else for (; p < end; ++p) emit(p, test(spheres[p], p));
         });
     }
 
@@ -106,6 +111,13 @@ struct CellPairs {
     GR_HD void find(std::size_t k, const Emit& emit) const {
         const Taken t = taken(k);
         sorted.find(t.a, t.a.reach + t.limit, t, emit);
+    }
+    static constexpr bool in_runs = !periodic && !seen;
+    GR_HD const neighbors::Sphere& sphere(std::size_t k) const { return spheres[k]; }
+    GR_HD std::uint32_t id(std::size_t k) const { return ids[k]; }
+    template <class Visit>
+    GR_HD void for_each_run(std::size_t k, const Visit& visit) const {
+        sorted.for_each_run(spheres[k], 2 * spheres[k].reach, visit);
     }
     GR_HD bool wide(std::size_t k) const { return spheres[k].reach > wide_from; }
     template <class Emit>
