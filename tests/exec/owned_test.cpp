@@ -1,0 +1,52 @@
+// Every way of testing runs of points finds what the definition says.
+#include "exec/owned_cpu.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+#include <vector>
+
+namespace grainray::cpu::owned {
+namespace {
+
+using neighbors::Sphere;
+
+TEST(OwnedPairs, AreFoundAloneAndSixteenAtOnce) {
+    std::mt19937 e(1);
+    std::uniform_real_distribution<float> u(-1, 1);
+    std::vector<Sphere> spheres(400);
+    std::vector<std::uint32_t> ids(spheres.size()), order(spheres.size());
+    for (std::size_t p = 0; p < spheres.size(); ++p) {
+        spheres[p] = {u(e), u(e), u(e), p % 3 ? 0.4f : 0.3f + 0.1f * u(e)};  // two in three are equal: their ids decide
+        order[p] = static_cast<std::uint32_t>((p * 271) % spheres.size());
+        ids[p] = order[p] * 3 + 1;
+    }
+    ids[7] = 0xfffffff0u;  // ids have no sign
+    std::size_t all = 0;
+    for (std::uint32_t a = 0; a < spheres.size(); ++a) {
+        std::vector<owned::Run> runs;
+        for (std::uint32_t first = a % 5; first < spheres.size();) {
+            const std::uint32_t last = std::min<std::uint32_t>(first + (first * 7 + a) % 41, static_cast<std::uint32_t>(spheres.size()));
+            runs.push_back({first, last});
+            first = last + 1 + a % 3;
+        }
+        std::vector<std::uint32_t> expected;
+        for (const owned::Run& run : runs)
+            for (std::uint32_t p = run.first; p < run.last; ++p)
+                if (neighbors::pair_test(spheres[a], spheres[p]) && neighbors::owns(spheres[a], ids[a], spheres[p], ids[p])) expected.push_back(order[p]);
+        std::sort(expected.begin(), expected.end());
+        all += expected.size();
+        for (const Append way : {Append{append}, best()}) {
+            std::vector<std::uint32_t> found(spheres.size() + 16);
+            const Points points{spheres.data(), ids.data(), order.data()};
+            found.resize(static_cast<std::size_t>(way(points, runs.data(), runs.data() + runs.size(), spheres[a], ids[a], found.data()) - found.data()));
+            std::sort(found.begin(), found.end());
+            ASSERT_EQ(found, expected) << "sphere " << a;
+        }
+    }
+    EXPECT_GT(all, spheres.size());
+}
+
+}  // namespace
+}  // namespace grainray::cpu::owned
