@@ -54,11 +54,15 @@ private:
         }
     };
 
+    static owned::Append best() {
+        if constexpr (requires { requires Finder::in_runs; }) return owned::best<Finder::wraps>();
+        else return nullptr;
+    }
     /// By runs of points, which are tested many at a time.
     void find_owned(std::size_t k, Entries& kept) const {
         constexpr std::size_t most = 64;
         owned::Run runs[most];
-        const owned::Points searched{finder_.sorted.spheres.data, finder_.sorted_ids.data, finder_.sorted.order.data};
+        const owned::Points searched{finder_.sorted.spheres.data, finder_.sorted_ids.data, finder_.sorted.order.data, finder_.period};
         std::size_t count = 0, points = 0;
         const auto flush = [&] {
             kept.make_room(points + 16);
@@ -76,7 +80,7 @@ private:
     }
 
     Finder finder_;
-    owned::Append append_ = owned::best();
+    owned::Append append_ = best();
     std::size_t items_;
     std::vector<std::vector<std::uint32_t>> kept_;  ///< of each item: how many, then which
 };

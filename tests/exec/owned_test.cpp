@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <random>
 #include <vector>
 
@@ -23,7 +24,7 @@ TEST(OwnedPairs, AreFoundAloneAndSixteenAtOnce) {
         ids[p] = order[p] * 3 + 1;
     }
     ids[7] = 0xfffffff0u;  // ids have no sign
-    std::size_t all = 0;
+    std::size_t all = 0, around = 0;
     for (std::uint32_t a = 0; a < spheres.size(); ++a) {
         std::vector<owned::Run> runs;
         for (std::uint32_t first = a % 5; first < spheres.size();) {
@@ -31,20 +32,23 @@ TEST(OwnedPairs, AreFoundAloneAndSixteenAtOnce) {
             runs.push_back({first, last});
             first = last + 1 + a % 3;
         }
-        std::vector<std::uint32_t> expected;
-        for (const owned::Run& run : runs)
-            for (std::uint32_t p = run.first; p < run.last; ++p)
-                if (neighbors::pair_test(spheres[a], spheres[p]) && neighbors::owns(spheres[a], ids[a], spheres[p], ids[p])) expected.push_back(order[p]);
-        std::sort(expected.begin(), expected.end());
-        all += expected.size();
-        for (const Append way : {Append{append}, best()}) {
-            std::vector<std::uint32_t> found(spheres.size() + 16);
-            const Points points{spheres.data(), ids.data(), order.data()};
-            found.resize(static_cast<std::size_t>(way(points, runs.data(), runs.data() + runs.size(), spheres[a], ids[a], found.data()) - found.data()));
-            std::sort(found.begin(), found.end());
-            ASSERT_EQ(found, expected) << "sphere " << a;
+        for (const Vec3f period : {Vec3f{}, Vec3f{2, 0, 2.5f}}) {
+            const Points points{spheres.data(), ids.data(), order.data(), period};
+            std::vector<std::uint32_t> expected;
+            for (const owned::Run& run : runs)
+                for (std::uint32_t p = run.first; p < run.last; ++p)
+                    if (neighbors::pair_test(spheres[a], spheres[p], period) && neighbors::owns(spheres[a], ids[a], spheres[p], ids[p])) expected.push_back(order[p]);
+            std::sort(expected.begin(), expected.end());
+            (period.x > 0 ? around : all) += expected.size();
+            for (const Append way : period.x > 0 ? std::array{Append{append<true>}, best<true>()} : std::array{Append{append<false>}, best<false>()}) {
+                std::vector<std::uint32_t> found(spheres.size() + 16);
+                found.resize(static_cast<std::size_t>(way(points, runs.data(), runs.data() + runs.size(), spheres[a], ids[a], found.data()) - found.data()));
+                std::sort(found.begin(), found.end());
+                ASSERT_EQ(found, expected) << "sphere " << a;
+            }
         }
     }
+    EXPECT_GT(around, all);
     EXPECT_GT(all, spheres.size());
 }
 

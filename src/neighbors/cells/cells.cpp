@@ -112,7 +112,7 @@ struct CellPairs {
         const Taken t = taken(k);
         sorted.find(t.a, t.a.reach + t.limit, t, emit);
     }
-    static constexpr bool in_runs = !periodic && !seen;
+    static constexpr bool in_runs = !seen, wraps = periodic;
     GR_HD const neighbors::Sphere& sphere(std::size_t k) const { return spheres[k]; }
     GR_HD std::uint32_t id(std::size_t k) const { return ids[k]; }
     template <class Visit>
