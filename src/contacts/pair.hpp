@@ -14,8 +14,9 @@ struct Separation {
 };
 
 GR_HD inline Separation separation(std::int32_t x, std::int32_t y, std::int32_t z, std::int64_t radii) {
-    const std::int64_t lx = x, ly = y, lz = z;
-    return {x, y, z, radii * radii - (lx * lx + ly * ly + lz * lz)};
+    // Unsigned: where spheres have flown apart within a step, which a look at the state may meet, nothing is undefined.
+    const auto square = [](std::int64_t v) { return static_cast<std::uint64_t>(v * v); };
+    return {x, y, z, static_cast<std::int64_t>(square(radii) - (square(x) + square(y) + square(z)))};
 }
 /// Unsigned subtraction wraps, which is what makes the near words enough.
 GR_HD inline std::int32_t wrapped(std::int32_t a, std::int32_t b) {
