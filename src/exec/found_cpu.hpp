@@ -2,7 +2,7 @@
 #pragma once
 
 #include "exec/cpu.hpp"
-#include "exec/owned_cpu.hpp"
+#include "exec/runs_cpu.hpp"
 #include "grainray/neighbors.hpp"
 
 namespace grainray::cpu {
@@ -21,7 +21,7 @@ public:
             for (std::size_t k = c * chunk; k < std::min(items_, (c + 1) * chunk); ++k) {
                 const std::size_t start = kept.end;
                 kept.put(0, true);
-                if constexpr (requires { requires Finder::in_runs; }) find_owned(k, kept);
+                if constexpr (requires { requires Finder::in_runs; }) find_in_runs(k, kept);
                 else finder_.find(k, [&](std::uint32_t place, bool hit) { kept.put(finder_.partner(place), hit); });
                 kept.all[start] = static_cast<std::uint32_t>(kept.end - start - 1);
                 visit(finder_.index(k), &kept.all[start] + 1, kept.all[start]);
@@ -54,25 +54,25 @@ private:
         }
     };
 
-    static owned::Append best() {
-        if constexpr (requires { requires Finder::in_runs; }) return owned::best<Finder::wraps>();
+    static runs::Append best() {
+        if constexpr (requires { requires Finder::in_runs; }) return runs::best<Finder::wraps, Finder::owners>();
         else return nullptr;
     }
     /// By runs of points, which are tested many at a time.
-    void find_owned(std::size_t k, Entries& kept) const {
+    void find_in_runs(std::size_t k, Entries& kept) const {
         constexpr std::size_t most = 64;
-        owned::Run runs[most];
-        const owned::Points searched{finder_.sorted.spheres.data, finder_.sorted_ids.data, finder_.sorted.order.data, finder_.period};
+        runs::Run all[most];
+        const runs::Points searched{finder_.sorted.spheres.data, finder_.search_ids().data, finder_.sorted.order.data, finder_.period};
         std::size_t count = 0, points = 0;
         const auto flush = [&] {
             kept.make_room(points + 16);
             std::uint32_t* const out = &kept.all[kept.end];
-            kept.end += static_cast<std::size_t>(append_(searched, runs, runs + count, finder_.sphere(k), finder_.id(k), out) - out);
+            kept.end += static_cast<std::size_t>(append_(searched, all, all + count, finder_.sphere(k), finder_.id(k), out) - out);
             count = points = 0;
         };
         finder_.for_each_run(k, [&](std::uint32_t first, std::uint32_t last) {
             if (first == last) return;
-            runs[count++] = {first, last};
+            all[count++] = {first, last};
             points += last - first;
             if (count == most) flush();
         });
@@ -80,7 +80,7 @@ private:
     }
 
     Finder finder_;
-    owned::Append append_ = best();
+    runs::Append append_ = best();
     std::size_t items_;
     std::vector<std::vector<std::uint32_t>> kept_;  ///< of each item: how many, then which
 };

@@ -9,10 +9,11 @@
 //   some_wide       there are such items
 //   wide(k)         item k is one
 //   find_share(k, share, shares, emit)   the part of find(k, emit) that is thread `share`'s
-// A Finder of owned pairs may let the CPU test many points at once instead (exec/owned_cpu.hpp):
+// A Finder may let the CPU test many points at once instead (exec/runs_cpu.hpp):
 //   in_runs         true; then it also has
+//   owners          whether only pairs count that the item's point owns
 //   wraps, period   whether there are periodic axes, and which
-//   sorted.spheres, sorted_ids, sorted.order   the points in the order of the search
+//   sorted.spheres, search_ids(), sorted.order   the points in the order of the search
 //   sphere(k), id(k), for_each_run(k, visit)   item k's, and visit(first, last) for the places of its candidates
 #pragma once
 

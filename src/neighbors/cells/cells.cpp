@@ -112,7 +112,8 @@ struct CellPairs {
         const Taken t = taken(k);
         sorted.find(t.a, t.a.reach + t.limit, t, emit);
     }
-    static constexpr bool in_runs = !seen, wraps = periodic;
+    static constexpr bool in_runs = !seen, wraps = periodic, owners = true;
+    GR_HD View<const std::uint32_t> search_ids() const { return sorted_ids; }
     GR_HD const neighbors::Sphere& sphere(std::size_t k) const { return spheres[k]; }
     GR_HD std::uint32_t id(std::size_t k) const { return ids[k]; }
     template <class Visit>
@@ -134,6 +135,14 @@ struct CellQueries {
     Vec3f period;
     float max_reach;
 
+    static constexpr bool in_runs = true, wraps = periodic, owners = false;
+    GR_HD View<const std::uint32_t> search_ids() const { return {}; }
+    GR_HD const neighbors::Sphere& sphere(std::size_t k) const { return queries[k]; }
+    GR_HD std::uint32_t id(std::size_t) const { return 0; }
+    template <class Visit>
+    GR_HD void for_each_run(std::size_t k, const Visit& visit) const {
+        sorted.for_each_run(queries[k], queries[k].reach + max_reach, visit);
+    }
     static constexpr bool one_set = false;
     GR_HD std::uint32_t partner(std::uint32_t place) const { return sorted.order[place]; }
     GR_HD std::uint32_t index(std::size_t k) const { return static_cast<std::uint32_t>(k); }

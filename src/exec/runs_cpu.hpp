@@ -1,4 +1,4 @@
-// Which points of some runs the owner of their pairs finds: 16 are tested at once where the processor can.
+// Which points of some runs a sphere finds: those it owns the pair with, or all near it. 16 are tested at once where the processor can.
 #pragma once
 
 #include "exec/widest.hpp"
@@ -8,7 +8,7 @@
 #include <immintrin.h>
 #endif
 
-namespace grainray::cpu::owned {
+namespace grainray::cpu::runs {
 
 /// Places of points in the order of a search.
 struct Run {
@@ -17,7 +17,7 @@ struct Run {
 
 struct Points {
     const neighbors::Sphere* spheres;
-    const std::uint32_t* ids;
+    const std::uint32_t* ids;    ///< where owners are asked for
     const std::uint32_t* order;  ///< index of the point at each place
     Vec3f period;                ///< 0 along an axis: none
 };
@@ -25,7 +25,7 @@ struct Points {
 /// Writes the partners of a to `out`, which has room for every point of the runs and 16 more; returns where it stopped.
 using Append = std::uint32_t* (*)(const Points&, const Run* begin, const Run* end, const neighbors::Sphere& a, std::uint32_t id, std::uint32_t* out);
 
-template <bool periodic>
+template <bool periodic, bool owners>
 std::uint32_t* append(const Points& points, const Run* begin, const Run* end, const neighbors::Sphere& a, std::uint32_t id, std::uint32_t* out) {
     for (const Run* run = begin; run != end; ++run)
         for (std::uint32_t p = run->first; p < run->last; ++p) {
@@ -34,7 +34,8 @@ std::uint32_t* append(const Points& points, const Run* begin, const Run* end, co
             bool near;
             if constexpr (periodic) near = neighbors::pair_test(a, b, points.period);
             else near = neighbors::pair_test(a, b);
-            out += near & neighbors::owns(a, id, b, points.ids[p]);
+            if constexpr (owners) near &= neighbors::owns(a, id, b, points.ids[p]);
+            out += near;
         }
     return out;
 }
@@ -52,7 +53,7 @@ inline __m512 nearest(__m512 d, float period) {
     return _mm512_mask_add_ps(_mm512_mask_sub_ps(d, above, d, box), below & ~above, d, box);
 }
 
-template <bool periodic>
+template <bool periodic, bool owners>
 std::uint32_t* append_v4(const Points& points, const Run* begin, const Run* end, const neighbors::Sphere& a, std::uint32_t id, std::uint32_t* out) {
     const __m512 ax = _mm512_set1_ps(a.x), ay = _mm512_set1_ps(a.y), az = _mm512_set1_ps(a.z), a_reach = _mm512_set1_ps(a.reach);
     // Four spheres a register become a field a register: lane l has point 4 (l % 4) + l / 4 of the sixteen.
@@ -79,11 +80,13 @@ std::uint32_t* append_v4(const Points& points, const Run* begin, const Run* end,
             const __mmask16 here = _mm512_cmplt_epu32_mask(turned, _mm512_set1_epi32(static_cast<int>(count)));
             __mmask16 hit = _mm512_mask_cmp_ps_mask(here, square, _mm512_mul_ps(reach, reach), _CMP_LT_OQ);
             if (!hit) continue;
-            const __mmask16 equal = _mm512_mask_cmp_ps_mask(hit, a_reach, b_reach, _CMP_EQ_OQ);
-            hit = _mm512_mask_cmp_ps_mask(hit, a_reach, b_reach, _CMP_GT_OQ);
-            if (equal) {
-                const __m512i ids = _mm512_permutexvar_epi32(turned, _mm512_maskz_loadu_epi32(valid, &points.ids[p]));
-                hit |= _mm512_mask_cmpgt_epu32_mask(equal, _mm512_set1_epi32(static_cast<int>(id)), ids);
+            if constexpr (owners) {
+                const __mmask16 equal = _mm512_mask_cmp_ps_mask(hit, a_reach, b_reach, _CMP_EQ_OQ);
+                hit = _mm512_mask_cmp_ps_mask(hit, a_reach, b_reach, _CMP_GT_OQ);
+                if (equal) {
+                    const __m512i ids = _mm512_permutexvar_epi32(turned, _mm512_maskz_loadu_epi32(valid, &points.ids[p]));
+                    hit |= _mm512_mask_cmpgt_epu32_mask(equal, _mm512_set1_epi32(static_cast<int>(id)), ids);
+                }
             }
             const __m512i partners = _mm512_permutexvar_epi32(turned, _mm512_maskz_loadu_epi32(valid, &points.order[p]));
             _mm512_storeu_si512(out, _mm512_maskz_compress_epi32(hit, partners));
@@ -95,12 +98,12 @@ std::uint32_t* append_v4(const Points& points, const Run* begin, const Run* end,
 #pragma GCC pop_options
 #endif
 
-template <bool periodic>
+template <bool periodic, bool owners>
 Append best() {
 #ifdef GRAINRAY_X86_LEVELS
-    if (__builtin_cpu_supports("x86-64-v4")) return append_v4<periodic>;
+    if (__builtin_cpu_supports("x86-64-v4")) return append_v4<periodic, owners>;
 #endif
-    return append<periodic>;
+    return append<periodic, owners>;
 }
 
-}  // namespace grainray::cpu::owned
+}  // namespace grainray::cpu::runs
