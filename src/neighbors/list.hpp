@@ -4,12 +4,11 @@
 //   index(k)        the point that work item k stands for (a locality-friendly order of the points)
 //   find(k, emit)   calls emit(place, hit) for candidates, hit where the pair belongs to index(k)
 //   partner(place)  the point of a candidate
-//   one_set         on CUDA: whether both are points of one set, so that a hit of a point with itself is none
 // and, where items may have far more candidates than others, so that CUDA lets a block of threads look at each of those,
 //   some_wide       there are such items
 //   wide(k)         item k is one
 //   find_share(k, share, shares, emit)   the part of find(k, emit) that is thread `share`'s
-// A Finder may let the CPU test many points at once instead (exec/runs_cpu.hpp):
+// A Finder may let the CPU test many points at once instead of find() (exec/runs_cpu.hpp):
 //   in_runs         true; then it also has
 //   owners          whether only pairs count that the item's point owns
 //   wraps, period   whether there are periodic axes, and which

@@ -9,7 +9,6 @@ struct BrutePairs {
     View<const std::uint32_t> ids;
     Vec3f period;
 
-    static constexpr bool one_set = true;
     GR_HD std::uint32_t partner(std::uint32_t place) const { return place; }
     GR_HD std::uint32_t index(std::size_t k) const { return static_cast<std::uint32_t>(k); }
     template <class Emit>
@@ -24,7 +23,6 @@ struct BruteQueries {
     View<const neighbors::Sphere> queries, points;
     Vec3f period;
 
-    static constexpr bool one_set = false;
     GR_HD std::uint32_t partner(std::uint32_t place) const { return place; }
     GR_HD std::uint32_t index(std::size_t k) const { return static_cast<std::uint32_t>(k); }
     template <class Emit>

@@ -25,23 +25,17 @@ struct Sorted {
     GR_HD void for_each_run(const neighbors::Sphere& s, float half_width, const Visit& visit) const {
         grid.for_each_run<device == Device::cuda>(s, half_width, [&](std::uint32_t first, std::uint32_t last) { visit(starts[first], starts[last]); });
     }
+    /// Two points at a time, so that they are waited for together.
     template <class Test, class Emit>
     GR_HD void find(const neighbors::Sphere& s, float half_width, const Test& test, const Emit& emit) const {
         for_each_run(s, half_width, [&](std::uint32_t p, std::uint32_t end) {
-            if constexpr (device == Device::cuda) visit_pairs(p, end, test, emit);
-            else for (; p < end; ++p) emit(p, test(spheres[p], p));
+            for (; p < end; p += 2) {
+                const std::uint32_t q = p + 1 < end ? p + 1 : p;
+                const neighbors::Sphere a = spheres[p], b = spheres[q];
+                emit(p, test(a, p));
+                emit(q, (q != p) & test(b, q));
+            }
         });
-    }
-
-    /// Two points at a time, so that they are waited for together.
-    template <class Test, class Emit>
-    GR_HD void visit_pairs(std::uint32_t p, std::uint32_t end, const Test& test, const Emit& emit) const {
-        for (; p < end; p += 2) {
-            const std::uint32_t q = p + 1 < end ? p + 1 : p;
-            const neighbors::Sphere a = spheres[p], b = spheres[q];
-            emit(p, test(a, p));
-            emit(q, (q != p) & test(b, q));
-        }
     }
 };
 
@@ -95,12 +89,10 @@ struct CellPairs {
         GR_HD bool operator()(const neighbors::Sphere& b, std::uint32_t p) const {
             const bool hit = near<periodic>(a, b, pairs.period);
             if constexpr (seen) return hit & (b.reach <= limit) & (p != place);
-            if constexpr (device == Device::cuda) return hit && neighbors::owns(a, id, b, pairs.sorted_ids[p]);
-            return hit & neighbors::owns(a, id, b, pairs.sorted_ids[p]);  // no branch: the CPU cannot guess its side
+            else return hit && neighbors::owns(a, id, b, pairs.sorted_ids[p]);
         }
     };
 
-    static constexpr bool one_set = true;
     GR_HD std::uint32_t partner(std::uint32_t place) const { return sorted.order[place]; }
     GR_HD Taken taken(std::size_t k) const {
         const neighbors::Sphere& a = spheres[k];
@@ -143,7 +135,6 @@ struct CellQueries {
     GR_HD void for_each_run(std::size_t k, const Visit& visit) const {
         sorted.for_each_run(queries[k], queries[k].reach + max_reach, visit);
     }
-    static constexpr bool one_set = false;
     GR_HD std::uint32_t partner(std::uint32_t place) const { return sorted.order[place]; }
     GR_HD std::uint32_t index(std::size_t k) const { return static_cast<std::uint32_t>(k); }
     template <class Emit>
