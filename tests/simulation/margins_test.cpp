@@ -117,24 +117,26 @@ Verdict judge(const Cloud& c, const Made& m) {
 // Boxes are 8 radii wide from the smallest coordinate on: a cloud's corner stands at 0.
 constexpr double u = 0.02;
 
-/// Two clusters with an empty box between them drive at each other with the widest margins of ordinary particles.
-Cloud ordinary_head_on() {
+/// With an empty box between them.
+Cloud clusters_closing_in() {
     Cloud c;
-    c.least = 1.4f;
     c.add({0, 0, 0}, {u, 0, 0});
     c.cluster(80, {2, 1, 1}, {7.9, 7, 7}, {u, 0, 0});
     c.cluster(80, {16.1, 1, 1}, {22, 7, 7}, {-u, 0, 0});
+    return c;
+}
+/// Two clusters with an empty box between them drive at each other with the widest margins of ordinary particles.
+Cloud ordinary_head_on() {
+    Cloud c = clusters_closing_in();
+    c.least = 1.4f;
     c.add({7.99, 4, 4}, {u, 0, 0});
     c.add({16.01, 4, 4}, {-u, 0, 0});
     return c;
 }
 /// A runaway and, in a cluster with an empty box between, a particle with the widest margin of its kind.
 Cloud runaway_against_drift(double side) {
-    Cloud c;
+    Cloud c = clusters_closing_in();
     c.least = 1.7f;
-    c.add({0, 0, 0}, {u, 0, 0});
-    c.cluster(80, {2, 1, 1}, {7.9, 7, 7}, {u, 0, 0});
-    c.cluster(80, {16.1, 1, 1}, {22, 7, 7}, {-u, 0, 0});
     c.add({7.99, 4, 4}, {20 * u * (1 - side), 0, 20 * u * side});
     c.add({16.6, 4, 4}, {-u, 0, 0});
     return c;
@@ -148,10 +150,7 @@ Cloud two_runaways() {
 }
 /// Hardly runaways: margins of 2 to 2.5.
 Cloud two_slow_runaways() {
-    Cloud c;
-    c.add({0, 0, 0}, {u, 0, 0});
-    c.cluster(80, {2, 1, 1}, {7.9, 7, 7}, {u, 0, 0});
-    c.cluster(80, {16.1, 1, 1}, {22, 7, 7}, {-u, 0, 0});
+    Cloud c = clusters_closing_in();
     c.add({7.99, 4, 4}, {2.3 * u, 0, 0});
     c.add({16.01, 4, 4}, {-2.3 * u, 0, 0});
     return c;
@@ -169,11 +168,8 @@ Cloud far_runaways() {
 }
 /// Boxes that touch and drift past and towards each other.
 Cloud sheared() {
-    Cloud c;
+    Cloud c = clusters_closing_in();
     c.least = 0.3f;
-    c.add({0, 0, 0}, {u, 0, 0});
-    c.cluster(80, {2, 1, 1}, {7.9, 7, 7}, {u, 0, 0});
-    c.cluster(80, {16.1, 1, 1}, {22, 7, 7}, {-u, 0, 0});
     for (int k = 0; k < 40; ++k) c.add({8.1 + 0.19 * k, 4, 4}, {0, 0, 0});
     return c;
 }
