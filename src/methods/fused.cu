@@ -10,7 +10,7 @@
 namespace grainray::cuda {
 namespace {
 
-constexpr unsigned step_threads = 128;
+constexpr unsigned step_threads = 128, step_blocks = 7;  // a multiprocessor: 72 registers a thread; with 64 its loop spills
 
 __device__ inline void add_to(Wrench& sum, const Wrench& more) {
     for (int a = 0; a < 3; ++a) {
@@ -49,10 +49,12 @@ struct FusedStep {
     template <bool periodic>
     __device__ void operator()(std::uint32_t i, std::uint32_t step) const {
         Near p = pairs.near[i];
-        Far f = pairs.far[i];
         Body b = pairs.body[i];
+        Far f{};  // read late where pairs do without it: registers are short
+        if constexpr (periodic) f = pairs.far[i];
         Wrench sum{};
         pairs.add<periodic>(law, i, p, f, b, sum);
+        if constexpr (!periodic) f = pairs.far[i];
         if (planes.offsets[i] != planes.offsets[i + 1])
             planes.add(i, convert<double>(join(p, f)) * fine, p.radius, b, planes_move ? std::size_t{step} * planes.plane_count : 0, sum);
         if (facet_rows && facet_rows[i] != ~0u) add_to(sum, facet_forces[facet_rows[i]]);
@@ -70,7 +72,7 @@ struct FusedStep {
 };
 
 template <bool periodic, class Law>
-__global__ void __launch_bounds__(step_threads, 1024 / step_threads) step_kernel(FusedStep<Law> fused, std::uint32_t step) {
+__global__ void __launch_bounds__(step_threads, step_blocks) step_kernel(FusedStep<Law> fused, std::uint32_t step) {
     if (*static_cast<const volatile std::uint32_t*>(fused.flags) < step) return;
     const std::uint32_t i = blockIdx.x * blockDim.x + threadIdx.x;
     if (i < fused.size) fused.template operator()<periodic>(i, step);
