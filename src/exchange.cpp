@@ -118,7 +118,12 @@ void Simulation::Impl::exchange() {
     const std::vector<Departure> gone = depart();
     const std::vector<Newcomer> come = arrive();
     if (gone.empty() && come.empty()) return;
-    if (gone.empty()) open_lists();
+    if (gone.empty()) {
+        open_lists();
+        std::vector<std::uint32_t> same(state.size());
+        std::iota(same.begin(), same.end(), 0u);
+        rows.assign(same);
+    }
     append(come);
     close_lists();
 }
@@ -162,7 +167,8 @@ std::vector<Newcomer> Simulation::Impl::arrive() {
     return all;
 }
 
-/// From now on the lists are old ones: they have a row for every particle there was, and an empty one.
+/// From now on the lists are old ones: they have a row for every particle there was, and an empty one. Which is whose, `rows`
+/// is told by what follows.
 void Simulation::Impl::open_lists() {
     if (state.size()) {
         stage.retire(state, old_grains);
@@ -171,9 +177,6 @@ void Simulation::Impl::open_lists() {
     add_empty_row(old_grains);
     add_empty_row(old_walls);
     if (state.facets.list.row_of.size()) state.facets.list.row_of.append({~0u});
-    std::vector<std::uint32_t> same(state.size());
-    std::iota(same.begin(), same.end(), 0u);
-    rows.assign(same);
 }
 
 void Simulation::Impl::append(const std::vector<Newcomer>& come) {

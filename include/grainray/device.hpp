@@ -121,9 +121,10 @@ public:
     }
     /// Adds at the end; what is stored stays.
     void append(const std::vector<T>& host) {
+        if (host.empty()) return;
         Array longer(device_, size_ + host.size());
         if (size_) detail::copy(device_, longer.data_, device_, data_, size_ * sizeof(T));
-        if (!host.empty()) detail::copy(device_, longer.data_ + size_, Device::cpu, host.data(), host.size() * sizeof(T));
+        detail::copy(device_, longer.data_ + size_, Device::cpu, host.data(), host.size() * sizeof(T));
         swap(longer);
     }
     std::vector<T> to_host() const {
