@@ -12,6 +12,7 @@
 #pragma once
 
 #include "boundary/facets.hpp"
+#include "exec/bits.hpp"
 #include "grainray/particles.hpp"
 
 namespace grainray {
@@ -38,6 +39,18 @@ struct FacetEntries {
     std::uint32_t size;
 };
 
+/// The entries of a row that matter in a step, one after the other: the first 32 whose bits are set, and all after those.
+struct Picked {
+    std::uint32_t bits = 0, next = 32;
+    GR_HD bool left(std::uint32_t size) const { return bits != 0 || next < size; }
+    GR_HD std::uint32_t take() {
+        if (bits == 0) return next++;
+        const std::uint32_t e = lowest_bit(bits);
+        bits &= bits - 1;
+        return e;
+    }
+};
+
 template <class Law>
 struct FacetContact {
     Law law;
@@ -62,23 +75,35 @@ struct FacetContact {
         const Vec3d moved = convert<double>(particle.body.velocity) - convert<double>(now.velocity) - cross(convert<double>(now.spin), arm);
         v.step = now.turned_back(moved) * dt;
         FacetForce out;
-        out.touching = look(v, out);
-        if (out.touching) inherit(v);
+        const Picked picked = pick(v);
+        out.touching = look(v, picked, out);
+        if (out.touching) inherit(v, picked);
         out.overlap = particle.radius - v.distance;
-        apply(v, out);
+        apply(v, picked, out);
         return out;
     }
 
 private:
     static constexpr float touched_by_rim = 2;
 
+    /// Could an entry touch, have been gone through since the step before, or does it remember anything?
+    GR_HD bool matters(const Seen& v, std::uint32_t e) const {
+        return entries.states[e].side != 0 || !shapes.apart(surface, entries.facets[e], v.x, particle.radius + length(v.step));
+    }
+    /// Most candidates do not matter. They are left out first, so that the threads of a warp evaluate those that do at once.
+    GR_HD Picked pick(const Seen& v) const {
+        Picked picked;
+        for (std::uint32_t e = 0; e < entries.size && e < picked.next; ++e) picked.bits |= std::uint32_t{matters(v, e)} << e;
+        return picked;
+    }
+
     /// Shares, mean distance, side; and whether the particle went through a facet since the step before.
-    GR_HD bool look(Seen& v, FacetForce& out) const {
+    GR_HD bool look(Seen& v, const Picked& picked, FacetForce& out) const {
         double area = 0, height = 0, before = 0, side = 0;
         bool rim = false;
-        const double reach = particle.radius + length(v.step);
-        for (std::uint32_t e = 0; e < entries.size; ++e) {
-            if (entries.states[e].side == 0 && shapes.apart(surface, entries.facets[e], v.x, reach)) {
+        for (Picked p = picked; p.left(entries.size);) {
+            const std::uint32_t e = p.take();
+            if (e >= 32 && !matters(v, e)) {
                 entries.shares[e] = 0;
                 continue;
             }
@@ -113,13 +138,15 @@ private:
         return true;
     }
 
-    GR_HD void inherit(const Seen& v) const {
-        for (std::uint32_t e = 0; e < entries.size; ++e) {
+    GR_HD void inherit(const Seen& v, const Picked& picked) const {
+        for (Picked p = picked; p.left(entries.size);) {
+            const std::uint32_t e = p.take();
             if (!(entries.shares[e] > 0) || entries.states[e].side != 0) continue;
             const Vec3d n = shapes.facet(surface, entries.facets[e]).normal;
             double sum = 0, most = 0;
             Vec3d mean;
-            for (std::uint32_t o = 0; o < entries.size; ++o) {
+            for (Picked other = picked; other.left(entries.size);) {
+                const std::uint32_t o = other.take();
                 if (entries.states[o].side == 0) continue;
                 const double cosine = v.side * entries.states[o].side * dot(n, shapes.facet(surface, entries.facets[o]).normal);
                 const double held = cosine > 0 ? cosine : 0, weight = held * held * held * held;
@@ -132,8 +159,9 @@ private:
         }
     }
 
-    GR_HD void apply(const Seen& v, FacetForce& out) const {
-        for (std::uint32_t e = 0; e < entries.size; ++e) {
+    GR_HD void apply(const Seen& v, const Picked& picked, FacetForce& out) const {
+        for (Picked p = picked; p.left(entries.size);) {
+            const std::uint32_t e = p.take();
             FacetState& state = entries.states[e];
             if (!(entries.shares[e] > 0)) {
                 if (state.side != 0) state = FacetState{};

@@ -131,25 +131,28 @@ struct FacetShapes {
         whole.distance = dot(t.normal, x - t.a);
         const double square = (radius - whole.distance) * (radius + whole.distance);
         if (!(square > 0)) return whole;
+        const int ab = beside_edge(t, 0, x, square), bc = beside_edge(t, 1, x, square), ca = beside_edge(t, 2, x, square);
+        if (ab < 0 || bc < 0 || ca < 0) return whole;
         whole.share = 1;
-        if (beside_edge(t, 0, x, square) > 0 && beside_edge(t, 1, x, square) > 0 && beside_edge(t, 2, x, square) > 0) return whole;
+        if (ab > 0 && bc > 0 && ca > 0) return whole;
         t.free_edges = rims(s, id);
         return section(t, x, radius);
     }
 
-    /// True only where the plane of a facet is farther than `reach` from x; cheaper than the facet itself.
+    /// True only where no point of a facet lies within `reach` of x; cheaper than the facet itself.
     GR_HD bool apart(const Surface& s, std::uint32_t id, const Vec3d& x, double reach) const {
-        if (!s.terrain) {
-            const double d = dot(triangles[id].normal, x - triangles[id].a);
-            return d > reach || d < -reach;
-        }
+        if (!s.terrain) return !within_reach(triangles[id], x, reach);
         const std::uint32_t cell = (id - s.first) / 2, nx = static_cast<std::uint32_t>(s.nx);
         const std::int32_t i = static_cast<std::int32_t>(cell % nx), j = static_cast<std::int32_t>(cell / nx);
         const bool half = (id - s.first) & 1;
+        const double px = x.x - (s.lower.x + i * s.width.x), py = x.y - (s.lower.y + j * s.width.y), wide = 1.000001 * reach;
+        if (px < -wide || px > s.width.x + wide || py < -wide || py > s.width.y + wide) return true;
+        const double beyond = (py * s.width.x - px * s.width.y) * (half ? -1 : 1);  // the diagonal
+        if (beyond > 0 && beyond * beyond > wide * wide * (s.width.x * s.width.x + s.width.y * s.width.y)) return true;
         const double corner = height(s, i, j), opposite = height(s, i + 1, j + 1), side = half ? height(s, i, j + 1) : height(s, i + 1, j);
         const double gx = (half ? opposite - side : side - corner) / s.width.x, gy = (half ? side - corner : opposite - side) / s.width.y;
-        const double above = x.z - corner - gx * (x.x - (s.lower.x + i * s.width.x)) - gy * (x.y - (s.lower.y + j * s.width.y));
-        return above * above > 1.000001 * reach * reach * (1 + gx * gx + gy * gy);
+        const double above = x.z - corner - gx * px - gy * py;
+        return above * above > wide * wide * (1 + gx * gx + gy * gy);
     }
     /// Surface of a facet, searched from surface q on.
     GR_HD std::uint32_t surface_of(std::uint32_t id, std::uint32_t q) const {

@@ -7,12 +7,12 @@
 
 namespace grainray {
 
-/// In the frame of its surface, metres. The normal is right-handed about a, b, c.
-struct Triangle {
+/// In the frame of its surface, metres. The normal is right-handed about a, b, c. Aligned so that a GPU reads it in 16 bytes.
+struct alignas(16) Triangle {
     Vec3d a, b, c, normal;
     std::uint32_t free_edges = 0;  ///< bit 0: ab, 1: bc, 2: ca belongs to no other triangle: a rim
 
-    GR_HD const Vec3d& corner(int k) const { return k == 0 ? a : k == 1 ? b : c; }
+    GR_HD Vec3d corner(int k) const { return k == 0 ? a : k == 1 ? b : c; }
     GR_HD bool is_free(int edge) const { return free_edges >> edge & 1; }
 };
 
@@ -28,7 +28,7 @@ struct EdgeView {
     double height, first, last;
 };
 GR_HD inline EdgeView edge_view(const Triangle& t, int edge, const Vec3d& x) {
-    const Vec3d &from = t.corner(edge), along = t.corner(edge == 2 ? 0 : edge + 1) - from;
+    const Vec3d from = t.corner(edge), along = t.corner(edge == 2 ? 0 : edge + 1) - from;
     const double size = length(along);
     const Vec3d direction = along * (1 / (size > 0 ? size : 1)), p = x - from;
     const double first = -dot(direction, p);
@@ -38,7 +38,7 @@ GR_HD inline EdgeView edge_view(const Triangle& t, int edge, const Vec3d& x) {
 /// Which side of a band of half-width `width` round an edge's line a point is on: +1 inside, -1 outside, 0 in the band or
 /// too near to it for rounding. No root is taken.
 GR_HD inline int beside_edge(const Triangle& t, int edge, const Vec3d& x, double square_width) {
-    const Vec3d &from = t.corner(edge), along = t.corner(edge == 2 ? 0 : edge + 1) - from;
+    const Vec3d from = t.corner(edge), along = t.corner(edge == 2 ? 0 : edge + 1) - from;
     const double height = dot(cross(t.normal, along), x - from);
     if (!(height * height > square_width * dot(along, along) * (1 + 1e-9))) return 0;
     return height > 0 ? 1 : -1;
@@ -46,10 +46,10 @@ GR_HD inline int beside_edge(const Triangle& t, int edge, const Vec3d& x, double
 
 /// Could any point of the triangle lie within `reach` of x? Never false where one does.
 GR_HD inline bool within_reach(const Triangle& t, const Vec3d& x, double reach) {
-    const double distance = dot(t.normal, x - t.a);
-    if (!(distance < reach && distance > -reach)) return false;
+    const double distance = dot(t.normal, x - t.a), square = (reach - distance) * (reach + distance);
+    if (!(square > 0)) return false;
     for (int edge = 0; edge < 3; ++edge)
-        if (beside_edge(t, edge, x, reach * reach) < 0) return false;
+        if (beside_edge(t, edge, x, square) < 0) return false;
     return true;
 }
 

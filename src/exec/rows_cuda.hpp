@@ -3,29 +3,13 @@
 // the pair touched when it was last evaluated: only then does it have a history, in three planes of 32 floats.
 #pragma once
 
-#include <bit>
-
+#include "exec/bits.hpp"
 #include "exec/cuda.hpp"
 #include "state.hpp"
 
 namespace grainray::cuda {
 
 inline constexpr std::uint32_t slice_rows = 32, live_bit = 1u << 31;
-
-GR_HD inline std::uint32_t lowest_bit(std::uint32_t bits) {
-#if defined(__CUDA_ARCH__)
-    return __ffs(bits) - 1;
-#else
-    return static_cast<std::uint32_t>(std::countr_zero(bits));
-#endif
-}
-GR_HD inline std::uint32_t bits_set(std::uint32_t bits) {
-#if defined(__CUDA_ARCH__)
-    return __popc(bits);
-#else
-    return static_cast<std::uint32_t>(std::popcount(bits));
-#endif
-}
 
 struct Rows {
     View<const std::uint64_t> starts;   ///< of each slice, entries; multiples of 32
