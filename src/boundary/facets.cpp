@@ -3,6 +3,7 @@
 #include "boundary/facet_contact.hpp"
 #include "contacts/laws.hpp"
 #include "exec/exec.hpp"
+#include "exec/overlap.hpp"
 #include "stages.hpp"
 
 namespace grainray::GRAINRAY_EXEC {
@@ -109,6 +110,8 @@ void list_facets(State& s, const StepConstants& constants, const Array<std::uint
 
 namespace {
 
+constexpr unsigned facet_blocks = 4;  // 128 registers a thread
+
 template <class Law>
 struct FacetForces {
     Law law;
@@ -175,7 +178,7 @@ void facets(State& s, ContactLaw law, const StepConstants& constants, std::uint3
     const View<const SurfaceNow> now{f.now.data() + (f.now.size() > surfaces ? step * surfaces : 0), surfaces};
     const View<Wrench> rows = target == FacetTarget::rows ? f.list.forces.view() : View<Wrench>{};
     with_law(law, constants.dt, [&](auto functor) {
-        for_each(f.list.rows(), FacetForces<decltype(functor)>{
+        for_each_first<facet_blocks>(f.list.rows(), FacetForces<decltype(functor)>{
             functor, shapes_of(f), now, f.parameters.view(), f.list.particles.view(), f.list.offsets.view(), f.list.facets.view(),
             f.list.states.view(), f.list.shares.view(), p.near.view(), p.far.view(), p.body.view(), p.id.view(), s.wrench.view(),
             rows, f.crossed.view(), s.flags.view(), step, p.scale.fine(), p.scale.unit, constants.dt, 1.0 / s.quanta.force, 1.0 / s.quanta.torque}, 64);

@@ -4,6 +4,7 @@
 #include "boundary/plane_contact.hpp"
 #include "contacts/laws.hpp"
 #include "dynamics/motion.hpp"
+#include "exec/overlap.hpp"
 #include "exec/pairs_cuda.hpp"
 #include "stages.hpp"
 
@@ -33,7 +34,7 @@ struct FusedStep {
     const Vec3f* __restrict__ frame;
     std::uint32_t* flags;
     const std::uint32_t* __restrict__ facet_rows;   // null without meshes and terrain
-    const Wrench* __restrict__ facet_forces;
+    const Wrench* facet_forces;                     // written while this kernel runs: not __restrict__
     double fine;
     std::uint32_t size, age;
     bool planes_move;
@@ -57,7 +58,10 @@ struct FusedStep {
         if constexpr (!periodic) f = pairs.far[i];
         if (planes.offsets[i] != planes.offsets[i + 1])
             planes.add(i, convert<double>(join(p, f)) * fine, p.radius, b, planes_move ? std::size_t{step} * planes.plane_count : 0, sum);
-        if (facet_rows && facet_rows[i] != ~0u) add_to(sum, facet_forces[facet_rows[i]]);
+        if (facet_rows && facet_rows[i] != ~0u) {
+            wait_for_first();
+            add_to(sum, facet_forces[facet_rows[i]]);
+        }
         Vec3f left = remainder[i];
         const bool finite = motion.advance(sum, p, f, b, left);
         near[i] = p;
@@ -73,7 +77,7 @@ struct FusedStep {
 
 template <bool periodic, class Law>
 __global__ void __launch_bounds__(step_threads, step_blocks) step_kernel(FusedStep<Law> fused, std::uint32_t step) {
-    if (*static_cast<const volatile std::uint32_t*>(fused.flags) < step) return;
+    if (*static_cast<const volatile std::uint32_t*>(fused.flags) < step) return wait_for_first();
     const std::uint32_t i = blockIdx.x * blockDim.x + threadIdx.x;
     if (i < fused.size) fused.template operator()<periodic>(i, step);
 }
@@ -88,8 +92,11 @@ template <bool periodic, class Law>
 void launch(State& s, ContactLaw name, const Law& law, const StepConstants& constants, float trigger, std::uint32_t steps) {
     const unsigned blocks = static_cast<unsigned>((s.size() + step_threads - 1) / step_threads);
     for (std::uint32_t step = 0; step < steps; ++step) {
-        if (s.facets.count()) facets(s, name, constants, step, FacetTarget::rows);
-        step_kernel<periodic><<<blocks, step_threads>>>(FusedStep<Law>(s, law, constants, trigger), step);
+        const FusedStep<Law> fused(s, law, constants, trigger);
+        if (s.facets.list.rows() > 0) {
+            facets(s, name, constants, step, FacetTarget::rows);
+            launch_second(step_kernel<periodic, Law>, blocks, step_threads, fused, step);
+        } else step_kernel<periodic><<<blocks, step_threads>>>(fused, step);
         swap_state(s);
     }
     check(cudaGetLastError(), "launch of a step");
