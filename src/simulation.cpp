@@ -102,7 +102,6 @@ void Simulation::Impl::make_lists() {
     stage.list_walls(state, constants, old_walls, old_index);
     if (state.facets.count()) stage.list_facets(state, constants, old_index);
 
-    detail::copy(options.device, state.flags.data(), Device::cpu, std::array{~0u, ~0u}.data(), 2 * sizeof(std::uint32_t));
     release_scratch();
     state.age.steps = 0;
     state.age.outdated = false;

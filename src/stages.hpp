@@ -10,10 +10,10 @@ namespace grainray {
 struct Stages {
     /// What the list knows of touching pairs, row after row; the list may be made anew.
     void (*retire)(State&, ContactList& old_list);
-    /// Morton order, periodic wrap; returns the old index of every new one: its row in the old lists. rows: where that row is
+    /// Morton order where the last has aged, periodic wrap; returns the old index of every new one: its row in the old lists. rows: where that row is
     /// not the index before sorting, because particles came or went; else empty.
     void (*sort)(State&, const ContactList& old_list, const Array<std::uint32_t>& rows, Array<std::uint32_t>& old_index);
-    /// Frames, margins, positions of this build, ListAge::limit; `spheres` gets 4 floats a particle: x y z reach.
+    /// Frames, margins, positions of this build, ListAge::limit; clears State::flags; `spheres` gets 4 floats a particle: x y z reach.
     void (*margins)(State&, const StepConstants&, const MarginRule&, Array<float>& spheres);
     /// The pairs found become the list, with the histories of the old one; sign -1 where the pair stood in the other row.
     void (*list_pairs)(State&, NeighborList& found, const ContactList& old_list, const Array<std::uint32_t>& old_index);

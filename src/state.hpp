@@ -58,7 +58,8 @@ struct State {
     Array<Body> next_body;
     Array<Near> built;      ///< position at the last build; `radius` holds the margin, units
     Array<Vec3f> frame;     ///< velocity of the surroundings at the last build, units a step: motion shared is no displacement
-    Vec3f lower, upper;     ///< bounds of the centres at the last sort, m from the origin
+    Vec3f lower, upper;     ///< bounds of the centres lately, m from the origin, or the periodic box where there is one
+    double disorder = 1e30; ///< ListAge::widening of all lists since particles were put in order
     ContactList grains, walls;
     Array<PairParameters> grain_parameters;  ///< materials x materials
     PairParameters only_parameters{};        ///< the first of them

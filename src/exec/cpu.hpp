@@ -32,7 +32,7 @@ void for_each_share(std::size_t n, const F& f) {
     }, tbb::static_partitioner());
 }
 
-/// op over f(0) ... f(n-1); the tree of additions depends on n alone.
+/// op over f(0) ... f(n-1); the tree of additions depends on n alone. f is called once for each i and may write what belongs to i.
 template <class T, class F, class Op>
 T reduce(std::size_t n, T identity, const F& f, const Op& op) {
     return tbb::parallel_deterministic_reduce(
@@ -43,6 +43,13 @@ T reduce(std::size_t n, T identity, const F& f, const Op& op) {
         },
         op);
 }
+
+/// The same into *result.
+template <class T, class F, class Op>
+void reduce_into(T* result, std::size_t n, T identity, const F& f, const Op& op) { *result = reduce(n, identity, f, op); }
+
+template <class T>
+T fetch(const T* value) { return *value; }
 
 /// Replaces each value by the sum of those before it; returns the sum of all.
 template <class T>
@@ -61,6 +68,8 @@ T exclusive_scan(View<T> values) {
     }, 1);
     return start[chunks];
 }
+template <class T>
+void sums_before(View<T> values) { exclusive_scan(values); }
 
 /// Stable radix sort of (keys, values) by the lowest `bits` bits of the keys; `keys2`, `values2` are scratch.
 template <class Key>

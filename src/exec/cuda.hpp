@@ -1,12 +1,11 @@
 // Primitives on one CUDA device, over CUB. Same contracts as exec/cpu.hpp.
 #pragma once
 
+#include <cub/block/block_reduce.cuh>
 #include <cub/device/device_radix_sort.cuh>
-#include <cub/device/device_reduce.cuh>
 #include <cub/device/device_scan.cuh>
-#include <thrust/iterator/counting_iterator.h>
-#include <thrust/iterator/transform_iterator.h>
 
+#include <algorithm>
 #include <array>
 
 #include "exec/cuda_error.hpp"
@@ -53,41 +52,94 @@ inline void* scratch(std::size_t bytes) {
     return memory.data();
 }
 
-/// Waits for the device and reads one value from it.
+/// Waits for the device.
+inline void synchronize() { check(cudaStreamSynchronize(nullptr), "synchronize"); }
+
+/// Where kernels put a result that the host reads after synchronize(): memory of the host, so that no copy is waited for.
 template <class T>
-T fetch(const T* value) {
-    static T* const landing = [] {
+T* landing() {
+    static T* const place = [] {
         void* p = nullptr;
         check(cudaMallocHost(&p, sizeof(T)), "host memory");
         return static_cast<T*>(p);
     }();
-    check(cudaMemcpyAsync(landing, value, sizeof(T), cudaMemcpyDeviceToHost), "copy");
-    check(cudaStreamSynchronize(nullptr), "copy");
-    return *landing;
+    return place;
+}
+
+/// Waits for the device and reads one value from it.
+template <class T>
+T fetch(const T* value) {
+    T* const place = landing<T>();
+    for_each(1, [=] GR_HD(std::size_t) { *place = *value; });
+    synchronize();
+    return *place;
+}
+
+inline constexpr unsigned reduce_threads = 256;
+
+/// Blocks leave their parts; the last of them to finish joins these. `finished` counts them and is 0 again afterwards.
+template <class T, class F, class Op>
+__global__ void __launch_bounds__(reduce_threads) reduce_kernel(std::size_t n, T identity, F f, Op op, T* parts, std::uint32_t* finished, T* result) {
+    using Block = cub::BlockReduce<T, reduce_threads>;
+    __shared__ typename Block::TempStorage room;
+    __shared__ bool last;
+    T sum = identity;
+    for (std::size_t i = blockIdx.x * std::size_t{reduce_threads} + threadIdx.x; i < n; i += std::size_t{gridDim.x} * reduce_threads) sum = op(sum, f(i));
+    sum = Block(room).Reduce(sum, op);
+    if (threadIdx.x == 0) {
+        parts[blockIdx.x] = sum;
+        __threadfence();
+        last = atomicInc(finished, gridDim.x - 1) == gridDim.x - 1;
+    }
+    __syncthreads();
+    if (!last) return;
+    sum = identity;
+    for (unsigned b = threadIdx.x; b < gridDim.x; b += reduce_threads) sum = op(sum, parts[b]);
+    sum = Block(room).Reduce(sum, op);
+    if (threadIdx.x == 0) *result = sum;
+}
+
+/// *result, which a kernel can reach, becomes op over f(0) ... f(n-1). f is called once for each i and may write what belongs to i.
+/// The order of additions depends on n alone.
+template <class T, class F, class Op>
+void reduce_into(T* result, std::size_t n, T identity, const F& f, const Op& op) {
+    static Array<std::uint32_t> finished(Device::cuda, std::vector<std::uint32_t>{0});
+    // A block has four items a thread, fewer where blocks would be too few to fill a GPU, more where they would be very many.
+    constexpr std::size_t many = 1024, most = 4096;
+    const std::size_t all = n / reduce_threads + 1;
+    const auto blocks = static_cast<unsigned>(std::min(all, std::clamp(all / 4, many, most)));
+    T* const parts = static_cast<T*>(scratch(blocks * sizeof(T)));
+    reduce_kernel<<<blocks, reduce_threads>>>(n, identity, f, op, parts, finished.data(), result);
+    check(cudaGetLastError(), "kernel launch");
 }
 
 template <class T, class F, class Op>
 T reduce(std::size_t n, T identity, const F& f, const Op& op) {
-    static Array<T> result(Device::cuda, 1);
-    const auto values = thrust::make_transform_iterator(thrust::counting_iterator<std::size_t>(0), f);
-    std::size_t bytes = 0;
-    check(cub::DeviceReduce::Reduce(nullptr, bytes, values, result.data(), n, op, identity), "reduce");
-    check(cub::DeviceReduce::Reduce(scratch(bytes), bytes, values, result.data(), n, op, identity), "reduce");
-    return fetch(result.data());
+    reduce_into(landing<T>(), n, identity, f, op);
+    synchronize();
+    return *landing<T>();
 }
 
+/// Replaces each value by the sum of those before it.
 template <class T>
-T exclusive_scan(View<T> values) {
-    if (values.size == 0) return T{};
-    Array<T> total(Device::cuda, 1);
-    const auto sum = total.view();
-    const T* last = values.end() - 1;
-    for_each(1, [=] GR_HD(std::size_t) { sum[0] = *last; });
+void sums_before(View<T> values) {
     std::size_t bytes = 0;
     check(cub::DeviceScan::ExclusiveSum(nullptr, bytes, values.data, values.data, values.size), "scan");
     check(cub::DeviceScan::ExclusiveSum(scratch(bytes), bytes, values.data, values.data, values.size), "scan");
-    for_each(1, [=] GR_HD(std::size_t) { sum[0] += *last; });
-    return fetch(sum.data);
+}
+
+/// The same; waits, and returns the sum of all.
+template <class T>
+T exclusive_scan(View<T> values) {
+    if (values.size == 0) return T{};
+    static Array<T> last_value(Device::cuda, 1);
+    T *const last = last_value.data(), *const total = landing<T>();
+    const T* const end = values.end() - 1;
+    for_each(1, [=] GR_HD(std::size_t) { *last = *end; });
+    sums_before(values);
+    for_each(1, [=] GR_HD(std::size_t) { *total = *last + *end; });
+    synchronize();
+    return *total;
 }
 
 template <class Key>
@@ -137,8 +189,18 @@ GR_HD void atomic_max(T* address, T value) {
 template <std::size_t n>
 GR_HD void atomic_add_together(std::int64_t* to, const std::array<std::int64_t, n>& value) {
 #if defined(__CUDA_ARCH__) && __CUDA_ARCH__ >= 800
-    const unsigned group = __match_any_sync(__activemask(), reinterpret_cast<unsigned long long>(to));
+    const unsigned active = __activemask(), group = __match_any_sync(active, reinterpret_cast<unsigned long long>(to));
     const bool leader = __ffs(group) - 1 == static_cast<int>(threadIdx.x % 32);
+    constexpr std::int64_t small = 1 << 26;  // the sum of 32 fits 32 bits
+    bool wide = false;
+    for (std::size_t k = 0; k < n; ++k) wide |= value[k] >= small || value[k] < -small;
+    if (!__any_sync(active, wide)) {
+        for (std::size_t k = 0; k < n; ++k) {
+            const std::int32_t sum = __reduce_add_sync(group, static_cast<std::int32_t>(value[k]));
+            if (leader) atomic_add(&to[k], std::int64_t{sum});
+        }
+        return;
+    }
     for (std::size_t k = 0; k < n; ++k) {
         const std::uint32_t low = __reduce_add_sync(group, static_cast<std::uint32_t>(value[k]) & 0xffff);
         const std::int32_t high = __reduce_add_sync(group, static_cast<std::int32_t>(value[k] >> 16));
@@ -148,7 +210,5 @@ GR_HD void atomic_add_together(std::int64_t* to, const std::array<std::int64_t, 
     for (std::size_t k = 0; k < n; ++k) atomic_add(&to[k], value[k]);
 #endif
 }
-
-inline void synchronize() { check(cudaDeviceSynchronize(), "synchronize"); }
 
 }  // namespace grainray::cuda

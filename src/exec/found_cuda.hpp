@@ -41,6 +41,11 @@ struct LeftOvers {
         }
         table.leave(slot++, row, entry);
     }
+    /// The room that is left holds nothing.
+    GR_HD void close() {
+        for (; slot < end; ++slot)
+            if (slot < table.left_over.size) table.left_over[slot] = {};
+    }
     template <class Finder, class Tells>
     GR_HD void add_found(const Finder& finder, std::uint32_t i, std::uint32_t place, const Tells& tells) {
         const std::uint32_t j = finder.partner(place);
@@ -81,6 +86,7 @@ void find_own(const Finder& finder, std::size_t items, const Tells& tells, const
         finder.find(k, [&](std::uint32_t place, bool hit) {
             if (hit && seen++ >= Table::places) rest.add_found(finder, i, place, tells);
         });
+        rest.close();
     });
 }
 
@@ -97,16 +103,18 @@ void find_wide(const Finder& finder, std::size_t items, const Tells& tells, cons
         const std::uint32_t k = wide[1 + w], i = finder.index(k);
         LeftOvers rest{table};
         finder.find_share(k, share, shares, [&](std::uint32_t place, bool hit) { if (hit) rest.add_found(finder, i, place, tells); });
+        rest.close();
     });
 }
 
 /// Each row's own entries into the rows of the others, after theirs. Four at a time, so that they wait for memory together.
+/// tells.any(i): there may be somebody whom i tells.
 template <class Tells>
 void tell_others(const Tells& tells, const Table& table) {
     constexpr std::uint32_t together = 4;
     for_each(table.counts.size, [=] GR_HD(std::size_t k) {
         const auto i = static_cast<std::uint32_t>(k);
-        const std::uint32_t own = table.own[i];
+        const std::uint32_t own = tells.any(i) ? table.own[i] : 0;
         for (std::uint32_t first = 0; first < own; first += together) {
             std::uint32_t row[together], place[together];
             for (std::uint32_t t = 0; t < together; ++t) {
@@ -148,6 +156,10 @@ __global__ void fill_from_places(Table table, const std::uint64_t* offsets, std:
     for (std::uint64_t e = threadIdx.x; e < end - begin; e += rows) entries[begin + e] = ordered[e];
 }
 
+struct ListSizes {
+    std::uint64_t entries, left_over;
+};
+
 /// The table and what it left over become rows. Returns how much that was: more than there is room for, and nothing is done.
 inline std::uint64_t fill_rows(const Table& table, NeighborList& list) {
     const std::size_t n = table.counts.size;
@@ -155,9 +167,13 @@ inline std::uint64_t fill_rows(const Table& table, NeighborList& list) {
     const auto offsets = list.offsets.view();
     for_each(n + 1, [=] GR_HD(std::size_t i) { offsets[i] = i < n ? table.held(i) : 0; });
     for_each_left_over(table, [=] GR_HD(std::uint32_t row, std::uint32_t) { atomic_add(&offsets[row], std::uint64_t{1}); });
-    const std::uint64_t total = exclusive_scan(offsets), left = fetch(table.left_over_count);
+    sums_before(offsets);
+    ListSizes* const sizes = landing<ListSizes>();
+    for_each(1, [=] GR_HD(std::size_t) { *sizes = {offsets[n], *table.left_over_count}; });
+    synchronize();
+    const std::uint64_t left = sizes->left_over;
     if (left > table.left_over.size) return left;
-    list.neighbors.resize_discard_slack(total);
+    list.neighbors.resize_discard_slack(sizes->entries);
     const auto entries = list.neighbors.view();
     constexpr unsigned together = 128;
     if (n) fill_from_places<together><<<static_cast<unsigned>((n + together - 1) / together), together>>>(table, offsets.data, entries.data);
@@ -176,7 +192,6 @@ void collect(const Finder& finder, std::size_t items, const Tells& tells, Neighb
     Array<std::uint64_t> left_over_count(device, 1);
     for (auto room = static_cast<std::size_t>((0.2 + 1.5 * usual) * static_cast<double>(items)) + 1024;;) {
         Array<LeftOver> left_over(device, room);
-        left_over.clear_bytes();
         left_over_count.clear_bytes();
         const Table table{entries.view(), own.view(), counts.view(), left_over.view(), left_over_count.data()};
         find_own(finder, items, tells, table);

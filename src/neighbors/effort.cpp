@@ -25,7 +25,7 @@ Effort cells_effort(const neighbors::Packed& asking, const neighbors::Packed& po
     const auto start = starts.view();
     const auto spheres = points.spheres.view(), from = asking.spheres.view();
     for_each(points.size(), [=] GR_HD(std::size_t i) { atomic_add(&start[grid.bucket(spheres[i])], 1u); });
-    exclusive_scan(start);
+    sums_before(start);
     const float largest = points.max_reach;
     const Looks all = reduce(asking.size(), Looks{0, 0}, [=] GR_HD(std::size_t i) {
         const float width = from[i].reach + (of_queries ? largest : from[i].reach);

@@ -61,6 +61,7 @@ struct Mirror {
 
     explicit Mirror(const neighbors::Request& r)
         : block(r.kind == ListKind::half ? 0xffffffffu : r.kind == ListKind::full ? 1u : r.block), some(r.kind != ListKind::half) {}
+    GR_HD bool any(std::uint32_t) const { return some; }
     GR_HD bool operator()(std::uint32_t i, std::uint32_t j) const { return block == 1 || i / block != j / block; }
 };
 

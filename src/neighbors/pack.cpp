@@ -8,6 +8,7 @@ namespace {
 struct Extent {
     float lo[3], hi[3];
     double min_reach, max_reach, sum_reach;
+    std::uint32_t first_bad;  ///< a point that cannot be searched; ~0: none
 };
 
 struct Join {
@@ -19,6 +20,7 @@ struct Join {
         a.min_reach = a.min_reach < b.min_reach ? a.min_reach : b.min_reach;
         a.max_reach = a.max_reach > b.max_reach ? a.max_reach : b.max_reach;
         a.sum_reach += b.sum_reach;
+        a.first_bad = a.first_bad < b.first_bad ? a.first_bad : b.first_bad;
         return a;
     }
 };
@@ -54,28 +56,22 @@ void pack_points(const Points& points, const neighbors::Request& request, const 
     packed.min_reach = packed.mean_reach = packed.max_reach = 0;
     if (n == 0) return;
 
-    Array<std::uint32_t> first_bad(device, std::vector<std::uint32_t>{0xffffffffu});
-    const auto bad = first_bad.view();
     const auto spheres = packed.spheres.view();
     const auto ids = packed.ids.view();
     const Points p = points;
     const Vec3f lower = request.lower, period = request.period;
-    for_each(n, [=] GR_HD(std::size_t i) {
+    constexpr float huge = 3.4e38f;
+    const Extent none{{huge, huge, huge}, {-huge, -huge, -huge}, huge, 0, 0, 0xffffffffu};
+    const Extent all = reduce(n, none, [=] GR_HD(std::size_t i) {
         const neighbors::Sphere s{p.x[i * p.stride], p.y[i * p.stride], p.z[i * p.stride],
                                   p.reach ? p.reach[i * p.reach_stride] : p.uniform_reach};
-        if (!finite(s.x) || !finite(s.y) || !finite(s.z) || !finite(s.reach) || s.reach < 0)
-            atomic_min(&bad[0], static_cast<std::uint32_t>(i));
-        spheres[i] = {wrap(s.x, lower.x, period.x), wrap(s.y, lower.y, period.y), wrap(s.z, lower.z, period.z), s.reach};
+        const bool good = finite(s.x) && finite(s.y) && finite(s.z) && finite(s.reach) && s.reach >= 0;
+        const neighbors::Sphere w{wrap(s.x, lower.x, period.x), wrap(s.y, lower.y, period.y), wrap(s.z, lower.z, period.z), s.reach};
+        spheres[i] = w;
         ids[i] = p.ids ? p.ids[i] : static_cast<std::uint32_t>(i);
-    });
-    if (const std::uint32_t b = first_bad.to_host()[0]; b != 0xffffffffu) refuse(points, b, what);
-
-    constexpr float huge = 3.4e38f;
-    const Extent none{{huge, huge, huge}, {-huge, -huge, -huge}, huge, 0, 0};
-    const Extent all = reduce(n, none, [=] GR_HD(std::size_t i) {
-        const neighbors::Sphere s = spheres[i];
-        return Extent{{s.x, s.y, s.z}, {s.x, s.y, s.z}, s.reach, s.reach, s.reach};
+        return Extent{{w.x, w.y, w.z}, {w.x, w.y, w.z}, s.reach, s.reach, s.reach, good ? 0xffffffffu : static_cast<std::uint32_t>(i)};
     }, Join{});
+    if (all.first_bad != 0xffffffffu) refuse(points, all.first_bad, what);
     packed.lower = {all.lo[0], all.lo[1], all.lo[2]};
     packed.upper = {all.hi[0], all.hi[1], all.hi[2]};
     packed.min_reach = static_cast<float>(all.min_reach);

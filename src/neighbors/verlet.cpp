@@ -27,9 +27,9 @@ struct Sums {
     std::int64_t count, x, y, z, square;
 };
 /// What a box tells its particles, units a step.
-struct Surroundings {
+struct alignas(16) Surroundings {
     Vec3f frame;
-    float spread;  ///< standard deviation of the velocity
+    float spread;  ///< standard deviation of the velocity; negative: nobody is in the box
     float shear;   ///< max |U - U'| over the boxes that touch
     float beyond;  ///< the same up to two boxes away
 };
@@ -41,18 +41,26 @@ struct Boxes {
 
     GR_HD std::uint32_t of(const neighbors::Sphere& s) const { return grid.bucket(s); }
 
-    /// visit(bucket, ring) for the boxes up to `rings` away; on axes of few buckets some come twice, which harms nothing.
-    template <class Visit>
-    GR_HD void for_each_around(std::uint32_t bucket, int rings, const Visit& visit) const {
+    /// visit(bucket, touches) for the boxes up to `rings` away; on axes of few buckets some come twice, which harms nothing.
+    template <int rings, class Visit>
+    GR_HD void for_each_around(std::uint32_t bucket, const Visit& visit) const {
+        constexpr int across = 2 * rings + 1;
         const std::int32_t nx = grid.x.buckets, ny = grid.y.buckets, nz = grid.z.buckets, b = static_cast<std::int32_t>(bucket);
         const std::int32_t x = b % nx, y = b / nx % ny, z = b / nx / ny;
-        const auto turn = [](std::int32_t v, std::int32_t n) { return (v % n + n) % n; };
-        for (int dz = -rings; dz <= rings; ++dz)
-            for (int dy = -rings; dy <= rings; ++dy)
-                for (int dx = -rings; dx <= rings; ++dx) {
-                    const bool near = dx * dx <= 1 && dy * dy <= 1 && dz * dz <= 1;
-                    visit(grid.row(turn(y + dy, ny), turn(z + dz, nz)) + static_cast<std::uint32_t>(turn(x + dx, nx)), near ? 1 : 2);
-                }
+        std::uint32_t xs[across];
+        for (int k = 0; k < across; ++k) xs[k] = static_cast<std::uint32_t>(turn(x + k - rings, nx));
+        const auto touches = [](int k) { return k >= rings - 1 && k <= rings + 1; };
+        for (int k = 0; k < across; ++k)
+            for (int j = 0; j < across; ++j) {
+                const std::uint32_t row = grid.row(turn(y + j - rings, ny), turn(z + k - rings, nz));
+                for (int i = 0; i < across; ++i) visit(row + xs[i], touches(i) && touches(j) && touches(k));
+            }
+    }
+    /// Back into an axis of n boxes, from up to 2 outside of it.
+    GR_HD static std::int32_t turn(std::int32_t v, std::int32_t n) {
+        while (v < 0) v += n;
+        while (v >= n) v -= n;
+        return v;
     }
 };
 
@@ -64,47 +72,9 @@ constexpr float fastest = 1e9f;  // units a step; particles beyond it are report
 
 GR_HD inline float held(float v) { return v < fastest ? (v > -fastest ? v : -fastest) : fastest; }
 
-void sum_boxes(const Boxes& boxes, View<const neighbors::Sphere> spheres, View<const Body> body, float to_units) {
-    for_each(spheres.size, [=] GR_HD(std::size_t i) {
-        const Vec3f v{held(body[i].velocity.x * to_units), held(body[i].velocity.y * to_units), held(body[i].velocity.z * to_units)};
-        const auto fixed = [](float f) { return static_cast<std::int64_t>(f); };
-        Sums& s = boxes.sums[boxes.of(spheres[i])];
-        atomic_add_together(&s.count, std::array<std::int64_t, 5>{1, fixed(v.x * 16), fixed(v.y * 16), fixed(v.z * 16), fixed(dot(v, v) * 0x1p-20f)});
-    });
-}
-
 struct AddSums {
     GR_HD Sums operator()(const Sums& a, const Sums& b) const { return {a.count + b.count, a.x + b.x, a.y + b.y, a.z + b.z, a.square + b.square}; }
 };
-
-void look_around(const Boxes& boxes) {
-    const Sums all = reduce(boxes.sums.size, Sums{}, [=] GR_HD(std::size_t c) { return boxes.sums[c]; }, AddSums{});
-    const double share = typical / static_cast<double>(all.count > 0 ? all.count : 1);
-    for_each(boxes.sums.size, [=] GR_HD(std::size_t c) {
-        double n = 0, x = 0, y = 0, z = 0, square = 0;
-        boxes.for_each_around(static_cast<std::uint32_t>(c), 1, [&](std::uint32_t b, int) {
-            const Sums& s = boxes.sums[b];
-            n += static_cast<double>(s.count);
-            x += static_cast<double>(s.x);
-            y += static_cast<double>(s.y);
-            z += static_cast<double>(s.z);
-            square += static_cast<double>(s.square);
-        });
-        if (n == 0) return;
-        const double vx = x / n / 16, vy = y / n / 16, vz = z / n / 16, variance = square / n * 0x1p20 - (vx * vx + vy * vy + vz * vz);
-        const auto frame = [=](double sum, std::int64_t of_all) { return static_cast<float>((sum + share * static_cast<double>(of_all)) / (n + typical) / 16); };
-        boxes.around[c] = {{frame(x, all.x), frame(y, all.y), frame(z, all.z)}, sqrtf(static_cast<float>(variance > 0 ? variance : 0)), 0, 0};
-    });
-    for_each(boxes.sums.size, [=] GR_HD(std::size_t c) {
-        if (boxes.sums[c].count == 0) return;
-        float most[2] = {0, 0};
-        boxes.for_each_around(static_cast<std::uint32_t>(c), 2, [&](std::uint32_t b, int ring) {
-            if (boxes.sums[b].count) most[ring - 1] = fmaxf(most[ring - 1], length(boxes.around[b].frame - boxes.around[c].frame));
-        });
-        boxes.around[c].shear = most[0];
-        boxes.around[c].beyond = fmaxf(most[0], most[1]);
-    });
-}
 
 /// Largest figures over all boxes.
 struct Extremes {
@@ -122,50 +92,106 @@ struct JoinExtremes {
     }
 };
 
-/// Steps the list may last at most, by the bounds at the head of this file. `radius`: the largest, units; `blur`: what the
-/// faces of the boxes may be off by rounding, radii.
-float longest_life(const Boxes& boxes, float wanted, float radius, float blur) {
-    const Extremes none{0, {fastest, fastest, fastest}, {-fastest, -fastest, -fastest}};
-    const Extremes e = reduce(boxes.sums.size, none, [=] GR_HD(std::size_t c) {
-        const Surroundings& a = boxes.around[c];
-        return boxes.sums[c].count ? Extremes{a.beyond, a.frame, a.frame} : none;
-    }, JoinExtremes{});
-    const float spread = boxes.sums.size ? length(e.fastest - e.slowest) : 0, least = 1e-30f;
-    const float bound = fminf((drift - blur) * radius / (e.beyond + least), (14 - 2 * widest - blur) * radius / (spread + least));
-    return fmaxf(1.0f, floorf(fminf(wanted, bound)));
+/// Bounds of the points that the search gets, m.
+struct Bounds {
+    Vec3f lower, upper;
+};
+struct JoinBounds {
+    GR_HD Bounds operator()(Bounds a, const Bounds& b) const {
+        for (int k = 0; k < 3; ++k) {
+            a.lower[k] = fminf(a.lower[k], b.lower[k]);
+            a.upper[k] = fmaxf(a.upper[k], b.upper[k]);
+        }
+        return a;
+    }
+};
+GR_HD inline float largest_coordinate(const Bounds& b) {
+    float most = 0;
+    for (int k = 0; k < 3; ++k) most = fmaxf(most, fmaxf(fabsf(b.lower[k]), fabsf(b.upper[k])));
+    return most;
 }
 
+/// Sums over all particles, units.
 struct Widths {
-    std::int64_t margins, radii;
+    std::int64_t margins, widenings, radii;  ///< widening: what a reach has beyond the radius
 };
 struct AddWidths {
-    GR_HD Widths operator()(const Widths& a, const Widths& b) const { return {a.margins + b.margins, a.radii + b.radii}; }
+    GR_HD Widths operator()(const Widths& a, const Widths& b) const { return {a.margins + b.margins, a.widenings + b.widenings, a.radii + b.radii}; }
 };
-/// Margins of all over radii of all.
-double mean_margin(View<const Near> near, View<const Near> built) {
-    const Widths w = reduce(near.size, Widths{0, 0}, [=] GR_HD(std::size_t i) { return Widths{built[i].radius, near[i].radius}; }, AddWidths{});
-    return w.radii ? static_cast<double>(w.margins) / static_cast<double>(w.radii) : 0;
-}
 
-/// What reaches have beyond the radii, of all over radii of all.
-double mean_widening(View<const Near> near, View<const neighbors::Sphere> spheres, double unit) {
-    const auto to_units = static_cast<float>(1 / unit);
-    const Widths w = reduce(near.size, Widths{0, 0}, [=] GR_HD(std::size_t i) {
-        return Widths{static_cast<std::int64_t>(spheres[i].reach * to_units) - near[i].radius, near[i].radius};
-    }, AddWidths{});
-    return w.radii ? static_cast<double>(w.margins) / static_cast<double>(w.radii) : 0;
-}
+/// What is true of all, one result after the other; the host reads it when the margins are there.
+struct Whole {
+    Bounds bounds;
+    Sums sums;
+    Extremes extremes;
+    float longest;  ///< coordinate or period, m
+    float steps;    ///< that the list may last
+    Widths widths;
+};
 
-/// Floats for the search, relative to the periodic box where there is one; reach comes later.
-void place_points(const State& s, View<neighbors::Sphere> spheres) {
+/// Floats for the search, relative to the periodic box where there is one (reach comes later), their bounds, and the sums of the boxes.
+void place_points(const State& s, const Boxes& boxes, float to_units, View<neighbors::Sphere> spheres, Whole* whole) {
     const auto near = s.particles.near.view();
     const auto far = s.particles.far.view();
+    const auto body = s.particles.body.view();
     const double fine = s.particles.scale.fine();
     const Vec3l lower{s.period.x > 0 ? s.period_lower.x : 0, s.period.y > 0 ? s.period_lower.y : 0, s.period.z > 0 ? s.period_lower.z : 0};
-    for_each(s.size(), [=] GR_HD(std::size_t i) {
-        const Vec3d x = convert<double>(join(near[i], far[i]) - lower) * fine;
-        spheres[i] = {static_cast<float>(x.x), static_cast<float>(x.y), static_cast<float>(x.z), 0};
+    constexpr float huge = 3.4e38f;
+    reduce_into(&whole->bounds, s.size(), Bounds{{huge, huge, huge}, {-huge, -huge, -huge}}, [=] GR_HD(std::size_t i) {
+        const Vec3f x = convert<float>(convert<double>(join(near[i], far[i]) - lower) * fine);
+        const neighbors::Sphere sphere{x.x, x.y, x.z, 0};
+        spheres[i] = sphere;
+        const Vec3f v{held(body[i].velocity.x * to_units), held(body[i].velocity.y * to_units), held(body[i].velocity.z * to_units)};
+        const auto fixed = [](float f) { return static_cast<std::int64_t>(f); };
+        atomic_add_together(&boxes.sums[boxes.of(sphere)].count,
+                            std::array<std::int64_t, 5>{1, fixed(v.x * 16), fixed(v.y * 16), fixed(v.z * 16), fixed(dot(v, v) * 0x1p-20f)});
+        return Bounds{x, x};
+    }, JoinBounds{});
+}
+
+void look_around(const Boxes& boxes, Whole* whole) {
+    reduce_into(&whole->sums, boxes.sums.size, Sums{}, [=] GR_HD(std::size_t c) { return boxes.sums[c]; }, AddSums{});
+    for_each(boxes.sums.size, [=] GR_HD(std::size_t c) {
+        const Sums all = whole->sums;
+        const double share = typical / static_cast<double>(all.count > 0 ? all.count : 1);
+        Sums near{};
+        if (boxes.sums[c].count)
+            boxes.for_each_around<1>(static_cast<std::uint32_t>(c), [&](std::uint32_t b, bool) { near = AddSums{}(near, boxes.sums[b]); });
+        if (near.count == 0) {
+            boxes.around[c] = {{}, -1, 0, 0};
+            return;
+        }
+        const auto n = static_cast<double>(near.count), x = static_cast<double>(near.x), y = static_cast<double>(near.y), z = static_cast<double>(near.z),
+                   square = static_cast<double>(near.square);
+        const double vx = x / n / 16, vy = y / n / 16, vz = z / n / 16, variance = square / n * 0x1p20 - (vx * vx + vy * vy + vz * vz);
+        const auto frame = [=](double sum, std::int64_t of_all) { return static_cast<float>((sum + share * static_cast<double>(of_all)) / (n + typical) / 16); };
+        boxes.around[c] = {{frame(x, all.x), frame(y, all.y), frame(z, all.z)}, sqrtf(static_cast<float>(variance > 0 ? variance : 0)), 0, 0};
     });
+    const Extremes none{0, {fastest, fastest, fastest}, {-fastest, -fastest, -fastest}};
+    reduce_into(&whole->extremes, boxes.sums.size, none, [=] GR_HD(std::size_t c) {
+        const Vec3f own = boxes.around[c].frame;
+        if (boxes.around[c].spread < 0) return none;
+        float touching = 0, near = 0;  // squares
+        boxes.for_each_around<2>(static_cast<std::uint32_t>(c), [&](std::uint32_t b, bool touches) {
+            const Surroundings a = boxes.around[b];
+            const Vec3f apart = a.frame - own;
+            const float square = a.spread < 0 ? 0 : dot(apart, apart);
+            near = fmaxf(near, square);
+            if (touches) touching = fmaxf(touching, square);
+        });
+        const float beyond = sqrtf(near);
+        boxes.around[c].shear = sqrtf(touching);
+        boxes.around[c].beyond = beyond;
+        return Extremes{beyond, own, own};
+    }, JoinExtremes{});
+}
+
+/// Steps the list may last at most, by the bounds at the head of this file. `radius`: the largest, units; `blur`: what the
+/// faces of the boxes may be off by rounding, radii.
+GR_HD inline float longest_life(const Extremes& e, float wanted, float radius, float blur) {
+    const float spread = length(e.fastest - e.slowest), least = 1e-30f;
+    const float bound = fminf((drift - blur) * radius / (e.beyond + least), (14 - 2 * widest - blur) * radius / (spread + least));
+    return fmaxf(1.0f, floorf(fminf(wanted, bound)));
 }
 
 }  // namespace
@@ -177,46 +203,59 @@ void margins(State& s, const StepConstants& constants, const MarginRule& rule, A
     s.built.resize_discard(n);
     s.frame.resize_discard(n);
     const View<neighbors::Sphere> spheres{reinterpret_cast<neighbors::Sphere*>(points.data()), n};
-    place_points(s, spheres);
 
+    // The grid wraps around, so bounds of the list before do as well.
     const Vec3f period = convert<float>(convert<double>(s.period) * unit);
     const float largest = static_cast<float>(rule.most_units * unit);
     Boxes boxes{neighbors::make_grid(n / 8, 4 * largest, s.lower, s.upper, Vec3f{}, period, 1), {}, {}};
     Array<Sums> sums(device, boxes.grid.buckets());
     Array<Surroundings> around(device, boxes.grid.buckets());
+    Array<Whole> wholes(device, 1);
+    Whole* const whole = wholes.data();
     sums.clear_bytes();
-    around.clear_bytes();
     boxes.sums = sums.view();
     boxes.around = around.view();
-    const auto body = s.particles.body.view();
     const float to_units = constants.dt / static_cast<float>(unit);
-    sum_boxes(boxes, spheres, body, to_units);
-    look_around(boxes);
+    place_points(s, boxes, to_units, spheres, whole);
+    look_around(boxes, whole);
 
-    const float longest = fmaxf(fmaxf(fmaxf(fabsf(s.lower.x), fabsf(s.upper.x)), fmaxf(fabsf(s.lower.y), fabsf(s.upper.y))),
-                                fmaxf(fmaxf(fabsf(s.lower.z), fabsf(s.upper.z)), fmaxf(period.x, fmaxf(period.y, period.z))));
-
-    const float steps = longest_life(boxes, rule.interval, rule.most_units, fminf(longest / largest * 5e-7f, drift - 0.1f));
-    s.age.limit = static_cast<std::uint32_t>(steps);
-    s.age.trigger = rule.trigger;
+    const float extent = fmaxf(largest_coordinate({s.lower, s.upper}), fmaxf(period.x, fmaxf(period.y, period.z)));
+    const auto flags = s.flags.view();
+    for_each(1, [=] GR_HD(std::size_t) {
+        whole->longest = fmaxf(extent, largest_coordinate(whole->bounds));
+        whole->steps = longest_life(whole->extremes, rule.interval, rule.most_units, fminf(whole->longest / largest * 5e-7f, drift - 0.1f));
+        flags[0] = flags[1] = ~0u;
+    });
 
     const auto near = s.particles.near.view(), built = s.built.view();
     const auto frame = s.frame.view();
-    for_each(n, [=] GR_HD(std::size_t i) {
+    const auto body = s.particles.body.view();
+    const auto units = static_cast<float>(1 / unit);
+    reduce_into(&whole->widths, n, Widths{}, [=] GR_HD(std::size_t i) {
         const Near q = near[i];
         const Surroundings& a = boxes.around[boxes.of(spheres[i])];
-        const float own = length(body[i].velocity * to_units - a.frame) + rule.spread * a.spread;
+        const float steps = whole->steps, own = length(body[i].velocity * to_units - a.frame) + rule.spread * a.spread;
         const float margin = fminf(own * steps + rule.least * static_cast<float>(q.radius), widest / rule.trigger * rule.most_units);
         const float drifts = steps * (margin > ordinary * rule.most_units ? fmaxf(0.5f * a.shear, a.beyond) : 0.5f * a.shear);
-        built[i] = {q.x, q.y, q.z, static_cast<std::int32_t>(margin)};
+        const auto kept = static_cast<std::int32_t>(margin);
+        built[i] = {q.x, q.y, q.z, kept};
         frame[i] = a.frame;
-        const float reach = static_cast<float>((static_cast<double>(q.radius) + built[i].radius + fminf(drifts, drift * rule.most_units)) * unit);
         // A list for one step may exceed the drift: it is used where it was made, and nothing drifts.
         // The search is exact for the floats it is given: the last term covers what rounding to them may hide.
-        spheres[i].reach = reach * 1.000002f + longest * 4e-7f;
-    });
-    s.age.margin = mean_margin(near, built);
-    s.age.widening = mean_widening(near, spheres, unit);
+        const float exact = static_cast<float>((static_cast<double>(q.radius) + kept + fminf(drifts, drift * rule.most_units)) * unit);
+        const float reach = exact * 1.000002f + whole->longest * 4e-7f;
+        spheres[i].reach = reach;
+        return Widths{kept, static_cast<std::int64_t>(reach * units) - q.radius, q.radius};
+    }, AddWidths{});
+
+    const Whole w = fetch(whole);
+    const auto over_radii = [&](std::int64_t sum) { return w.widths.radii ? static_cast<double>(sum) / static_cast<double>(w.widths.radii) : 0; };
+    s.lower = w.bounds.lower;
+    s.upper = w.bounds.upper;
+    s.age.limit = static_cast<std::uint32_t>(w.steps);
+    s.age.trigger = rule.trigger;
+    s.age.margin = over_radii(w.widths.margins);
+    s.age.widening = over_radii(w.widths.widenings);
     s.age.widest = widest / rule.trigger * rule.most_units;
 }
 

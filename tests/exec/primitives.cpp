@@ -30,6 +30,20 @@ double sum(const std::vector<double>& values) {
     return reduce(values.size(), 0.0, [=] GR_HD(std::size_t i) { return v[i]; }, Add{});
 }
 
+struct AddIndices {
+    GR_HD std::uint64_t operator()(std::uint64_t a, std::uint64_t b) const { return a + b; }
+};
+
+std::vector<std::uint32_t> calls(std::size_t n, std::uint64_t& sum) {
+    Array<std::uint32_t> counts(device, n);
+    Array<std::uint64_t> result(device, 1);
+    counts.clear_bytes();
+    const auto c = counts.view();
+    reduce_into(result.data(), n, std::uint64_t{0}, [=] GR_HD(std::size_t i) { return ++c[i], std::uint64_t{i}; }, AddIndices{});
+    sum = fetch(result.data());
+    return counts.to_host();
+}
+
 std::vector<std::uint32_t> histogram(const std::vector<std::uint32_t>& values, std::uint32_t bins) {
     Array<std::uint32_t> a(device, values), counts(device, bins);
     counts.clear_bytes();
@@ -49,6 +63,6 @@ std::uint32_t first_above(const std::vector<std::uint32_t>& values, std::uint32_
 
 }  // namespace
 
-const PrimitiveFunctions primitive_functions{scan, sort, sum, histogram, first_above};
+const PrimitiveFunctions primitive_functions{scan, sort, sum, calls, histogram, first_above};
 
 }  // namespace grainray::GRAINRAY_EXEC

@@ -68,6 +68,16 @@ TEST_P(Primitives, ReduceAddsEverythingAndRepeatsToTheBit) {
     }
 }
 
+TEST_P(Primitives, ReduceCallsItsFunctionOnceForEach) {
+    auto all = sizes;
+    all.push_back(5'000'000);
+    for (const std::size_t n : all) {
+        std::uint64_t sum = 1;
+        EXPECT_EQ(f.calls(n, sum), std::vector<std::uint32_t>(n, 1)) << n;
+        EXPECT_EQ(sum, n ? n * (n - 1) / 2 : 0) << n;
+    }
+}
+
 TEST_P(Primitives, AtomicsLoseNothing) {
     const auto values = random(300000, 1u << 20);
     std::vector<std::uint32_t> expected(7, 0);

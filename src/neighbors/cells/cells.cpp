@@ -48,6 +48,9 @@ GR_HD inline bool near(const neighbors::Sphere& a, const neighbors::Sphere& b, c
     else return neighbors::pair_test(a, b);
 }
 
+/// Mean reaches up to which points see each other. Wider than 1 where few are much larger: what sees more need not be told.
+constexpr float common_reach = 1.1f;
+
 /// Where rows are full, CUDA lets both points of a pair find it where their reaches are about equal: to find twice costs less
 /// than to tell the other. A point sees those of no larger reach, of up to `common`, and up to a quarter larger; of two, the one with the
 /// larger reach sees the other.
@@ -62,8 +65,10 @@ struct Sight {
 struct Unseeing {
     View<const neighbors::Sphere> spheres;
     Sight sight;
+    float seen_by_all;  ///< reach up to which every point sees a point
     bool some;
 
+    GR_HD bool any(std::uint32_t i) const { return spheres[i].reach > seen_by_all; }
     GR_HD bool operator()(std::uint32_t i, std::uint32_t j) const { return !sight.sees(spheres[j], spheres[i]); }
 };
 
@@ -96,7 +101,7 @@ struct CellPairs {
     GR_HD std::uint32_t partner(std::uint32_t place) const { return sorted.order[place]; }
     GR_HD Taken taken(std::size_t k) const {
         const neighbors::Sphere& a = spheres[k];
-        return {*this, a, ids[k], indices.size ? static_cast<std::uint32_t>(k) : places[k], seen ? sight.limit(a.reach) : a.reach};
+        return {*this, a, seen ? 0 : ids[k], indices.size ? static_cast<std::uint32_t>(k) : places[k], seen ? sight.limit(a.reach) : a.reach};
     }
     GR_HD std::uint32_t index(std::size_t k) const { return indices.size ? indices[k] : static_cast<std::uint32_t>(k); }
     template <class Emit>
@@ -147,12 +152,12 @@ struct CellQueries {
 class Cells final : public neighbors::Backend {
 public:
     void pairs(const neighbors::Packed& points, const neighbors::Request& r, NeighborList& list) override {
-        const Sorted sorted = sort(points, r);
+        const Sorted sorted = sort(points, r, !(device == Device::cuda && full(r)));
         if (r.periodic()) build<true>(sorted, points, r, list);
         else build<false>(sorted, points, r, list);
     }
     void queries(const neighbors::Packed& q, const neighbors::Packed& points, const neighbors::Request& r, NeighborList& list) override {
-        const Sorted sorted = sort(points, r);
+        const Sorted sorted = sort(points, r, false);
         const auto queries = q.spheres.view();
         if (r.periodic()) build_list(CellQueries<true>{sorted, queries, r.period, points.max_reach}, q.size(), Mirror(r), r.ascending, list);
         else build_list(CellQueries<false>{sorted, queries, r.period, points.max_reach}, q.size(), Mirror(r), r.ascending, list);
@@ -166,17 +171,20 @@ public:
         spheres_.release();
     }
 
-    Sorted sort(const neighbors::Packed& points, const neighbors::Request& r);
+    /// owners: pairs are taken by the owner rule, which asks for the ids.
+    Sorted sort(const neighbors::Packed& points, const neighbors::Request& r, bool owners);
 
 private:
+    static bool full(const neighbors::Request& r) { return r.kind == ListKind::full || (r.kind == ListKind::blocked && r.block == 1); }
     template <bool periodic>
     void build(const Sorted& sorted, const neighbors::Packed& points, const neighbors::Request& r, NeighborList& list) {
-        const Sight sight{points.mean_reach};
-        const bool full = r.kind == ListKind::full || (r.kind == ListKind::blocked && r.block == 1);
+        const Sight sight{neighbors::smaller(common_reach * points.mean_reach, points.max_reach)};
         if constexpr (device == Device::cuda)
-            if (full)
+            if (full(r)) {
+                const float seen_by_all = sight.limit(points.min_reach);
                 return build_list(finder<periodic, true>(sorted, points, r, sight), points.size(),
-                                  Unseeing{points.spheres.view(), sight, points.max_reach > sight.limit(points.min_reach)}, r.ascending, list);
+                                  Unseeing{points.spheres.view(), sight, seen_by_all, points.max_reach > seen_by_all}, r.ascending, list);
+            }
         build_list(finder<periodic, false>(sorted, points, r, sight), points.size(), Mirror(r), r.ascending, list);
     }
     template <bool periodic, bool seen>
@@ -192,13 +200,13 @@ private:
 };
 
 /// A counting sort: how many lie in each bucket, where each bucket starts, and each point to its place.
-Sorted Cells::sort(const neighbors::Packed& points, const neighbors::Request& r) {
+Sorted Cells::sort(const neighbors::Packed& points, const neighbors::Request& r, bool owners) {
     const std::size_t n = points.size();
     const neighbors::Grid grid = neighbors::make_grid(n, points.mean_reach, points.lower, points.upper, r.lower, r.period, neighbors::search_cut_x);
     ranks_.resize_discard(n);
     order_.resize_discard(n);
     spheres_.resize_discard(n);
-    ids_.resize_discard(n);
+    ids_.resize_discard(owners ? n : 0);
     starts_.resize_discard_slack(grid.buckets() + 1);
     starts_.clear_bytes();
     const auto in = points.spheres.view();
@@ -206,13 +214,16 @@ Sorted Cells::sort(const neighbors::Packed& points, const neighbors::Request& r)
     const auto spheres = spheres_.view();
     const auto ranks = ranks_.view(), order = order_.view(), ids = ids_.view(), starts = starts_.view();
     for_each(n, [=] GR_HD(std::size_t i) { ranks[i] = atomic_add(&starts[grid.bucket(in[i])], 1u); });
-    exclusive_scan(starts);
+    sums_before(starts);
     for_each(n, [=] GR_HD(std::size_t i) {
         const std::uint32_t p = starts[grid.bucket(in[i])] + ranks[i];
-        spheres[p] = in[i];
-        ids[p] = in_ids[i];
         order[p] = static_cast<std::uint32_t>(i);
         ranks[i] = p;
+    });
+    for_each(n, [=] GR_HD(std::size_t p) {
+        const std::uint32_t i = order[p];
+        spheres[p] = in[i];
+        if (owners) ids[p] = in_ids[i];
     });
     return {grid, spheres, order, starts};
 }
