@@ -8,14 +8,17 @@
 
 namespace grainray::neighbors {
 
-/// Points packed, checked and wrapped into the periodic box: the same numbers for every back end.
+/// Points packed, checked and wrapped into the periodic box: the same numbers for every back end. What the caller has in this form
+/// already stays where it is.
 struct Packed {
-    explicit Packed(Device device) : spheres(device), ids(device) {}
-    Array<Sphere> spheres;
-    Array<std::uint32_t> ids;
+    explicit Packed(Device device) : copied_spheres(device), copied_ids(device) {}
+    View<const Sphere> spheres;
+    View<const std::uint32_t> ids;
+    Array<Sphere> copied_spheres;
+    Array<std::uint32_t> copied_ids;
     float min_reach = 0, mean_reach = 0, max_reach = 0;
     Vec3f lower{}, upper{};  ///< bounds of the centres
-    std::size_t size() const { return spheres.size(); }
+    std::size_t size() const { return spheres.size; }
 };
 
 struct Request {

@@ -23,7 +23,7 @@ Effort cells_effort(const neighbors::Packed& asking, const neighbors::Packed& po
     Array<std::uint32_t> starts(device, grid.buckets() + 1);
     starts.clear_bytes();
     const auto start = starts.view();
-    const auto spheres = points.spheres.view(), from = asking.spheres.view();
+    const auto spheres = points.spheres, from = asking.spheres;
     for_each(points.size(), [=] GR_HD(std::size_t i) { atomic_add(&start[grid.bucket(spheres[i])], 1u); });
     sums_before(start);
     const float largest = points.max_reach;

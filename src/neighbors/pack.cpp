@@ -33,6 +33,13 @@ GR_HD inline float wrap(float x, float lower, float period) {
 
 GR_HD inline bool finite(float v) { return v - v == 0; }
 
+/// The points where they are, if nothing has to be changed about them.
+const neighbors::Sphere* as_spheres(const Points& p, const neighbors::Request& request) {
+    const bool aligned = reinterpret_cast<std::uintptr_t>(p.x) % alignof(neighbors::Sphere) == 0;
+    const bool together = p.stride == 4 && p.y == p.x + 1 && p.z == p.x + 2 && p.reach == p.x + 3 && p.reach_stride == 4;
+    return aligned && together && !request.periodic() ? reinterpret_cast<const neighbors::Sphere*>(p.x) : nullptr;
+}
+
 [[noreturn]] void refuse(const Points& points, std::uint32_t bad, const char* what) {
     const auto at = [&](const float* array, std::size_t stride) {
         float v = 0;
@@ -50,25 +57,28 @@ GR_HD inline bool finite(float v) { return v - v == 0; }
 void pack_points(const Points& points, const neighbors::Request& request, const char* what, neighbors::Packed& packed) {
     const std::size_t n = points.size;
     if (n >= 0xffffffffu) throw InputError(std::to_string(n) + " points: at most 4294967294 can be searched");
-    packed.spheres.resize_discard(n);
-    packed.ids.resize_discard(n);
+    const neighbors::Sphere* const in_place = as_spheres(points, request);
+    packed.copied_spheres.resize_discard(in_place ? 0 : n);
+    packed.copied_ids.resize_discard(points.ids ? 0 : n);
+    const auto spheres = packed.copied_spheres.view();
+    const auto ids = packed.copied_ids.view();
+    packed.spheres = in_place ? View<const neighbors::Sphere>{in_place, n} : spheres;
+    packed.ids = points.ids ? View<const std::uint32_t>{points.ids, n} : ids;
     packed.lower = packed.upper = {};
     packed.min_reach = packed.mean_reach = packed.max_reach = 0;
     if (n == 0) return;
 
-    const auto spheres = packed.spheres.view();
-    const auto ids = packed.ids.view();
     const Points p = points;
     const Vec3f lower = request.lower, period = request.period;
     constexpr float huge = 3.4e38f;
     const Extent none{{huge, huge, huge}, {-huge, -huge, -huge}, huge, 0, 0, 0xffffffffu};
     const Extent all = reduce(n, none, [=] GR_HD(std::size_t i) {
-        const neighbors::Sphere s{p.x[i * p.stride], p.y[i * p.stride], p.z[i * p.stride],
-                                  p.reach ? p.reach[i * p.reach_stride] : p.uniform_reach};
+        const neighbors::Sphere s = in_place ? in_place[i] : neighbors::Sphere{p.x[i * p.stride], p.y[i * p.stride], p.z[i * p.stride],
+                                                                              p.reach ? p.reach[i * p.reach_stride] : p.uniform_reach};
         const bool good = finite(s.x) && finite(s.y) && finite(s.z) && finite(s.reach) && s.reach >= 0;
         const neighbors::Sphere w{wrap(s.x, lower.x, period.x), wrap(s.y, lower.y, period.y), wrap(s.z, lower.z, period.z), s.reach};
-        spheres[i] = w;
-        ids[i] = p.ids ? p.ids[i] : static_cast<std::uint32_t>(i);
+        if (spheres.size) spheres[i] = w;
+        if (ids.size) ids[i] = static_cast<std::uint32_t>(i);
         return Extent{{w.x, w.y, w.z}, {w.x, w.y, w.z}, s.reach, s.reach, s.reach, good ? 0xffffffffu : static_cast<std::uint32_t>(i)};
     }, Join{});
     if (all.first_bad != 0xffffffffu) refuse(points, all.first_bad, what);

@@ -199,14 +199,14 @@ void NeighborSearch::set_block(std::uint32_t block) { impl_->options.block = blo
 
 void NeighborSearch::release() {
     for (neighbors::Packed* packed : {&impl_->points, &impl_->queries}) {
-        packed->spheres.release();
-        packed->ids.release();
+        packed->copied_spheres.release();
+        packed->copied_ids.release();
     }
     for (const auto& [name, backend] : impl_->made) backend->release();
 }
 
 std::size_t NeighborSearch::memory_bytes() const {
-    std::size_t bytes = impl_->points.spheres.bytes() + impl_->points.ids.bytes();
+    std::size_t bytes = impl_->points.copied_spheres.bytes() + impl_->points.copied_ids.bytes();
     for (const auto& [name, backend] : impl_->made) bytes += backend->memory_bytes();
     return bytes;
 }

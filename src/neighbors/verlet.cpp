@@ -156,7 +156,9 @@ void look_around(const Boxes& boxes, Whole* whole) {
         const double share = typical / static_cast<double>(all.count > 0 ? all.count : 1);
         Sums near{};
         if (boxes.sums[c].count)
-            boxes.for_each_around<1>(static_cast<std::uint32_t>(c), [&](std::uint32_t b, bool) { near = AddSums{}(near, boxes.sums[b]); });
+            boxes.for_each_around<1>(static_cast<std::uint32_t>(c), [&](std::uint32_t b, bool) {
+                if (boxes.sums[b].count) near = AddSums{}(near, boxes.sums[b]);
+            });
         if (near.count == 0) {
             boxes.around[c] = {{}, -1, 0, 0};
             return;

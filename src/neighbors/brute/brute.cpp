@@ -35,10 +35,10 @@ struct BruteQueries {
 class Brute final : public neighbors::Backend {
 public:
     void pairs(const neighbors::Packed& p, const neighbors::Request& r, NeighborList& list) override {
-        build_list(BrutePairs{p.spheres.view(), p.ids.view(), r.period}, p.size(), Mirror(r), r.ascending, list);
+        build_list(BrutePairs{p.spheres, p.ids, r.period}, p.size(), Mirror(r), r.ascending, list);
     }
     void queries(const neighbors::Packed& q, const neighbors::Packed& p, const neighbors::Request& r, NeighborList& list) override {
-        build_list(BruteQueries{q.spheres.view(), p.spheres.view(), r.period}, q.size(), Mirror(r), r.ascending, list);
+        build_list(BruteQueries{q.spheres, p.spheres, r.period}, q.size(), Mirror(r), r.ascending, list);
     }
     std::size_t memory_bytes() const override { return 0; }
 };

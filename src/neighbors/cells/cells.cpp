@@ -158,7 +158,7 @@ public:
     }
     void queries(const neighbors::Packed& q, const neighbors::Packed& points, const neighbors::Request& r, NeighborList& list) override {
         const Sorted sorted = sort(points, r, false);
-        const auto queries = q.spheres.view();
+        const auto queries = q.spheres;
         if (r.periodic()) build_list(CellQueries<true>{sorted, queries, r.period, points.max_reach}, q.size(), Mirror(r), r.ascending, list);
         else build_list(CellQueries<false>{sorted, queries, r.period, points.max_reach}, q.size(), Mirror(r), r.ascending, list);
     }
@@ -183,7 +183,7 @@ private:
             if (full(r)) {
                 const float seen_by_all = sight.limit(points.min_reach);
                 return build_list(finder<periodic, true>(sorted, points, r, sight), points.size(),
-                                  Unseeing{points.spheres.view(), sight, seen_by_all, points.max_reach > seen_by_all}, r.ascending, list);
+                                  Unseeing{points.spheres, sight, seen_by_all, points.max_reach > seen_by_all}, r.ascending, list);
             }
         build_list(finder<periodic, false>(sorted, points, r, sight), points.size(), Mirror(r), r.ascending, list);
     }
@@ -191,7 +191,7 @@ private:
     CellPairs<periodic, seen> finder(const Sorted& sorted, const neighbors::Packed& points, const neighbors::Request& r, const Sight& sight) const {
         const float wide_from = wide_reach * points.mean_reach;
         const bool some_wide = points.max_reach > wide_from;
-        if (r.local_order) return {sorted, ids_.view(), points.spheres.view(), points.ids.view(), {}, ranks_.view(), r.period, sight, wide_from, some_wide};
+        if (r.local_order) return {sorted, ids_.view(), points.spheres, points.ids, {}, ranks_.view(), r.period, sight, wide_from, some_wide};
         return {sorted, ids_.view(), spheres_.view(), ids_.view(), order_.view(), ranks_.view(), r.period, sight, wide_from, some_wide};
     }
 
@@ -203,18 +203,20 @@ private:
 Sorted Cells::sort(const neighbors::Packed& points, const neighbors::Request& r, bool owners) {
     const std::size_t n = points.size();
     const neighbors::Grid grid = neighbors::make_grid(n, points.mean_reach, points.lower, points.upper, r.lower, r.period, neighbors::search_cut_x);
+    starts_.resize_discard_slack(grid.buckets() + 1);
+    starts_.clear_bytes();
     ranks_.resize_discard(n);
+    const auto in = points.spheres;
+    const auto in_ids = points.ids;
+    const auto ranks = ranks_.view(), starts = starts_.view();
+    for_each(n, [=] GR_HD(std::size_t i) { ranks[i] = atomic_add(&starts[grid.bucket(in[i])], 1u); });
+    sums_before(starts);
+
     order_.resize_discard(n);
     spheres_.resize_discard(n);
     ids_.resize_discard(owners ? n : 0);
-    starts_.resize_discard_slack(grid.buckets() + 1);
-    starts_.clear_bytes();
-    const auto in = points.spheres.view();
-    const auto in_ids = points.ids.view();
     const auto spheres = spheres_.view();
-    const auto ranks = ranks_.view(), order = order_.view(), ids = ids_.view(), starts = starts_.view();
-    for_each(n, [=] GR_HD(std::size_t i) { ranks[i] = atomic_add(&starts[grid.bucket(in[i])], 1u); });
-    sums_before(starts);
+    const auto order = order_.view(), ids = ids_.view();
     for_each(n, [=] GR_HD(std::size_t i) {
         const std::uint32_t p = starts[grid.bucket(in[i])] + ranks[i];
         order[p] = static_cast<std::uint32_t>(i);

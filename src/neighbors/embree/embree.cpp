@@ -79,14 +79,14 @@ public:
 
     void pairs(const neighbors::Packed& p, const neighbors::Request& r, NeighborList& list) override {
         const Boxes boxes = build(p, p, r);
-        if (r.periodic()) build_list(RayPairs<true>{boxes, p.ids.view()}, p.size(), Mirror(r), r.ascending, list);
-        else build_list(RayPairs<false>{boxes, p.ids.view()}, p.size(), Mirror(r), r.ascending, list);
+        if (r.periodic()) build_list(RayPairs<true>{boxes, p.ids}, p.size(), Mirror(r), r.ascending, list);
+        else build_list(RayPairs<false>{boxes, p.ids}, p.size(), Mirror(r), r.ascending, list);
         tree_.check();
     }
     void queries(const neighbors::Packed& q, const neighbors::Packed& p, const neighbors::Request& r, NeighborList& list) override {
         const Boxes boxes = build(q, p, r);
-        if (r.periodic()) build_list(RayQueries<true>{boxes, q.spheres.view()}, q.size(), Mirror(r), r.ascending, list);
-        else build_list(RayQueries<false>{boxes, q.spheres.view()}, q.size(), Mirror(r), r.ascending, list);
+        if (r.periodic()) build_list(RayQueries<true>{boxes, q.spheres}, q.size(), Mirror(r), r.ascending, list);
+        else build_list(RayQueries<false>{boxes, q.spheres}, q.size(), Mirror(r), r.ascending, list);
         tree_.check();
     }
     std::size_t memory_bytes() const override { return tree_.memory_bytes(); }
@@ -95,8 +95,8 @@ private:
     Boxes build(const neighbors::Packed& askers, const neighbors::Packed& p, const neighbors::Request& r) {
         const float extra = published_ ? askers.max_reach : 0, widest = p.max_reach + extra;
         const rays::Frame frame = rays::frame_of({{p.lower, p.upper}, {askers.lower, askers.upper}}, widest, r.period);
-        tree_.build(p.spheres.view(), extra, frame);
-        return {{tree_.scene(), published_}, p.spheres.view(), {frame.box(p.lower, widest).lower, frame.box(p.upper, widest).upper}, frame};
+        tree_.build(p.spheres, extra, frame);
+        return {{tree_.scene(), published_}, p.spheres, {frame.box(p.lower, widest).lower, frame.box(p.upper, widest).upper}, frame};
     }
 
     embree::Tree tree_;

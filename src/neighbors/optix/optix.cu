@@ -24,7 +24,7 @@ constexpr std::size_t most_boxes = std::size_t{1} << 29;  // OptiX takes no more
 
 /// Spheres in the order of the tree, and their boxes.
 void place_spheres(const Packed& p, View<const std::uint32_t> order, View<Sphere> spheres) {
-    const auto from = p.spheres.view();
+    const auto from = p.spheres;
     for_each(order.size, [=] GR_HD(std::size_t k) { spheres[k] = from[order[k]]; });
 }
 template <class BoxOf>
@@ -139,7 +139,7 @@ public:
 private:
     rays::Rows rows(const rays::Slots& slots, const Packed& sources, const Packed& p, Search search, const Request& r) const {
         const View<const Sphere> boxes = spheres_.view();
-        return {slots, order_.order(), p.spheres.view(), p.ids.view(), doubtful_.view(), search == Search::queries ? sources.spheres.view() : boxes, boxes, r.period};
+        return {slots, order_.order(), p.spheres, p.ids, doubtful_.view(), search == Search::queries ? sources.spheres : boxes, boxes, r.period};
     }
     rays::Slots trace(Search, const Packed& sources, const Packed& points, const Request&);
     bool update_tree(Search, const Packed& sources, const Packed& points);
@@ -212,7 +212,7 @@ rays::Slots OptiX::trace(Search search, const Packed& sources, const Packed& poi
     optix::Parameters q{};
     q.boxes = tree_.handle();
     q.points = spheres_.view();
-    q.sources = search == Search::queries ? sources.spheres.view() : spheres_.view();
+    q.sources = search == Search::queries ? sources.spheres : spheres_.view();
     q.frame = frame_;
     q.bounds = {frame_.box(points.lower, widest).lower, frame_.box(points.upper, widest).upper};
     q.periodic = r.periodic();

@@ -22,7 +22,7 @@ void number(const neighbors::Packed& p, int bits, View<std::uint64_t> keys, View
     float extent = 1e-30f;
     for (int a = 0; a < 3; ++a) extent = fmaxf(extent, 0.5f * p.upper[a] - 0.5f * p.lower[a]);
     const float cells = static_cast<float>((1 << bits) - 1), scale = 0.5f * cells / extent;
-    const auto spheres = p.spheres.view();
+    const auto spheres = p.spheres;
     for_each(p.size(), [=] GR_HD(std::size_t i) {
         const neighbors::Sphere s = spheres[i];
         const auto cell = [=](float v, float lo) { return static_cast<std::uint64_t>(fminf(fmaxf((v - lo) * scale, 0.0f), cells)); };
@@ -65,8 +65,8 @@ void BoxOrder::sort(const neighbors::Packed& p) {
     const std::size_t n = p.size();
     sort_along_curve(p, keys_, keys2_, order_, order2_);
     ids_.resize_discard(n);
-    gather_ids(p.ids.view(), order_.view(), ids_.view());
-    const auto ids = p.ids.view();
+    gather_ids(p.ids, order_.view(), ids_.view());
+    const auto ids = p.ids;
     const std::size_t largest = reduce(n, std::uint32_t{0}, [=] GR_HD(std::size_t i) { return ids[i]; }, Largest{});
     // A table of places by id, unless ids are so far apart that it would outgrow the points; then every tree is a new one.
     place_.resize_discard(largest < 4 * n + 1024 ? largest + 1 : 0);
@@ -76,7 +76,7 @@ void BoxOrder::sort(const neighbors::Packed& p) {
 bool BoxOrder::follow(const neighbors::Packed& p) {
     if (p.size() != ids_.size() || place_.size() == 0) return false;
     wrong_.clear_bytes();
-    follow_ids(p.ids.view(), place_.view(), ids_.view(), order_.view(), wrong_.view());
+    follow_ids(p.ids, place_.view(), ids_.view(), order_.view(), wrong_.view());
     return wrong_.to_host()[0] == 0;
 }
 
