@@ -55,6 +55,23 @@ inline void* scratch(std::size_t bytes) {
 /// Waits for the device.
 inline void synchronize() { check(cudaStreamSynchronize(nullptr), "synchronize"); }
 
+/// What the device has been given so far: wait() returns when that is done, whatever it has been given since.
+class SoFar {
+public:
+    SoFar() { check(cudaEventRecord(event(), nullptr), "event"); }
+    void wait() const { check(cudaEventSynchronize(event()), "event"); }
+
+private:
+    static cudaEvent_t event() {
+        static const cudaEvent_t only = [] {
+            cudaEvent_t made;
+            check(cudaEventCreateWithFlags(&made, cudaEventDisableTiming), "event");
+            return made;
+        }();
+        return only;
+    }
+};
+
 /// Where kernels put a result that the host reads after synchronize(): memory of the host, so that no copy is waited for.
 template <class T>
 T* landing() {

@@ -138,17 +138,24 @@ void for_each_left_over(const Table& table, const Visit& visit) {
     });
 }
 
+/// How much the table and what it left over come to.
+struct ListSizes {
+    std::uint64_t entries, left_over;
+    GR_HD bool fit(const Table& table, const View<std::uint32_t>& list) const { return entries <= list.size && left_over <= table.left_over.size; }
+};
+
 /// The places of a block's rows, put in order in shared memory where they fit, so that they are written side by side; what stands
 /// between them then is overwritten by what was left over.
 template <unsigned rows>
-__global__ void fill_from_places(Table table, const std::uint64_t* offsets, std::uint32_t* entries) {
+__global__ void fill_from_places(Table table, const std::uint64_t* offsets, View<std::uint32_t> entries) {
     constexpr unsigned room = rows * Table::places;
     __shared__ std::uint32_t ordered[room];
     const std::size_t n = table.counts.size, first = std::size_t{blockIdx.x} * rows, i = first + threadIdx.x;
+    if (!ListSizes{offsets[n], *table.left_over_count}.fit(table, entries)) return;
     const std::uint32_t held = i < n ? table.held(i) : 0;
     const std::uint64_t start = offsets[min(i, n)], begin = offsets[first], end = offsets[min(first + rows, n)];
     const bool fits = end - begin <= room;
-    std::uint32_t* const row = fits ? ordered + (start - begin) : entries + start;
+    std::uint32_t* const row = fits ? ordered + (start - begin) : entries.data + start;
     for (std::uint32_t p = 0; p < held; ++p) row[p] = table.at(i, p);
     if (i < n) table.counts[i] = held;
     if (!fits) return;
@@ -156,12 +163,21 @@ __global__ void fill_from_places(Table table, const std::uint64_t* offsets, std:
     for (std::uint64_t e = threadIdx.x; e < end - begin; e += rows) entries[begin + e] = ordered[e];
 }
 
-struct ListSizes {
-    std::uint64_t entries, left_over;
-};
+/// Nothing happens where there is no room for all.
+inline void fill_rows(const Table& table, View<const std::uint64_t> offsets, View<std::uint32_t> entries) {
+    const std::size_t n = table.counts.size;
+    if (n == 0) return;
+    constexpr unsigned together = 128;
+    fill_from_places<together><<<static_cast<unsigned>((n + together - 1) / together), together>>>(table, offsets.data, entries);
+    check(cudaGetLastError(), "kernel launch");
+    for_each_left_over(table, [=] GR_HD(std::uint32_t row, std::uint32_t entry) {
+        if (ListSizes{offsets[n], *table.left_over_count}.fit(table, entries)) entries[offsets[row] + atomic_add(&table.counts[row], 1u)] = entry;
+    });
+}
 
-/// The table and what it left over become rows. Returns how much that was: more than there is room for, and nothing is done.
-inline std::uint64_t fill_rows(const Table& table, NeighborList& list) {
+/// The table and what it left over become rows, at once where there is room for as many entries as expected. Returns their sizes;
+/// where more was left over than there is room for, nothing is done.
+inline ListSizes make_rows(const Table& table, std::size_t expected, NeighborList& list) {
     const std::size_t n = table.counts.size;
     list.offsets.resize_discard(n + 1);
     const auto offsets = list.offsets.view();
@@ -170,23 +186,21 @@ inline std::uint64_t fill_rows(const Table& table, NeighborList& list) {
     sums_before(offsets);
     ListSizes* const sizes = landing<ListSizes>();
     for_each(1, [=] GR_HD(std::size_t) { *sizes = {offsets[n], *table.left_over_count}; });
-    synchronize();
-    const std::uint64_t left = sizes->left_over;
-    if (left > table.left_over.size) return left;
+    const SoFar counted;
+    list.neighbors.resize_discard(expected);
+    fill_rows(table, offsets, list.neighbors.view());
+    counted.wait();
+    if (sizes->left_over > table.left_over.size) return *sizes;
+    const bool filled = sizes->entries <= expected;
     list.neighbors.resize_discard_slack(sizes->entries);
-    const auto entries = list.neighbors.view();
-    constexpr unsigned together = 128;
-    if (n) fill_from_places<together><<<static_cast<unsigned>((n + together - 1) / together), together>>>(table, offsets.data, entries.data);
-    check(cudaGetLastError(), "kernel launch");
-    if (left)
-        for_each_left_over(table, [=] GR_HD(std::uint32_t row, std::uint32_t entry) { entries[offsets[row] + atomic_add(&table.counts[row], 1u)] = entry; });
-    return left;
+    if (!filled) fill_rows(table, offsets, list.neighbors.view());
+    return *sizes;
 }
 
 template <class Finder, class Tells>
 void collect(const Finder& finder, std::size_t items, const Tells& tells, NeighborList& list) {
     static_assert(std::is_trivially_copyable_v<Finder>);
-    static double usual = 0;  // left over of an item, lately
+    static double usual = 0, usual_entries = 0;  // left over of an item, lately, and found for it
     Array<std::uint32_t> entries(device, items * Table::places), counts(device, items);
     Array<std::uint8_t> own(device, items);
     Array<std::uint64_t> left_over_count(device, 1);
@@ -198,10 +212,14 @@ void collect(const Finder& finder, std::size_t items, const Tells& tells, Neighb
         if constexpr (knows_wide<Finder>)
             if (finder.some_wide) find_wide(finder, items, tells, table);
         if (tells.some) tell_others(tells, table);
-        const std::uint64_t left = fill_rows(table, list);
-        if (items) usual = std::max(0.9 * usual, static_cast<double>(left) / static_cast<double>(items));
-        if (left <= room) return;
-        room = left;
+        const double expected = std::min<double>(1.1 * usual_entries, Table::places);
+        const ListSizes sizes = make_rows(table, static_cast<std::size_t>(expected * static_cast<double>(items)), list);
+        if (items) {
+            usual = std::max(0.9 * usual, static_cast<double>(sizes.left_over) / static_cast<double>(items));
+            usual_entries = static_cast<double>(sizes.entries) / static_cast<double>(items);
+        }
+        if (sizes.left_over <= room) return;
+        room = sizes.left_over;
     }
 }
 
