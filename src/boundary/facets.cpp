@@ -110,7 +110,7 @@ void list_facets(State& s, const StepConstants& constants, const Array<std::uint
 
 namespace {
 
-constexpr unsigned facet_blocks = 4;  // 128 registers a thread
+constexpr unsigned facet_blocks = 4;  // a multiprocessor: 128 registers a thread
 
 template <class Law>
 struct FacetForces {
