@@ -2,9 +2,10 @@
 // what the law makes of it. Shared by the stage and by observers.
 //
 // Facet i takes the share w_i = s_i (r + d_i) / (r + d) of a contact with its plane, where s_i is its share of the disc in
-// which the plane cuts the sphere, d_i the plane's distance and d the mean distance weighted by disc area. On a plane of
-// many triangles w_i = s_i, which add up to 1. At edges the elastic forces are then areas times one pressure, so they are
-// (but for the change of that pressure) minus the gradient of the volume cut off: a sphere gains no energy there.
+// which the plane cuts the sphere, d_i the plane's distance and d that of the one plane that would press as hard. On a plane
+// of many triangles w_i = s_i, which add up to 1. At edges the elastic forces are then areas times one pressure, so minus
+// the gradient of the volume cut off times that pressure; a sphere gains no energy where it follows from the volume alone.
+// Nearly so: d is the distance of the plane whose disc is as large as the vector sum of the discs, which is that gradient.
 //
 // Every facet has a tangential history of its own, as if it were the whole contact. One that begins to touch takes over
 // the mean of those that touched in the step before, weighted by how nearly they face the same way: on a plane all
@@ -65,7 +66,9 @@ struct FacetContact {
     /// In the frame of the surface; the motion is that of the step before, relative to the surface.
     struct Seen {
         Vec3d x, step;
-        double side = 0, distance = 0;
+        double side = 0;
+        double distance = 0;  ///< mean of the planes' distances over the areas of their discs
+        double pressing = 0;  ///< distance of the one plane that would press as hard
     };
 
     GR_HD FacetForce operator()() const {
@@ -101,6 +104,8 @@ private:
     GR_HD bool look(Seen& v, const Picked& picked, FacetForce& out) const {
         double area = 0, height = 0, before = 0, side = 0;
         bool rim = false;
+        double shares = 0;
+        Vec3d push;
         for (Picked p = picked; p.left(entries.size);) {
             const std::uint32_t e = p.take();
             if (e >= 32 && !matters(v, e)) {
@@ -116,6 +121,8 @@ private:
             if (s.share > 0 && !s.rim) {
                 const double part = s.share * (particle.radius - s.distance) * (particle.radius + s.distance);
                 area += part;
+                push += t.normal * part;
+                shares += s.share;
                 height += part * s.distance;
                 before += part * (s.distance - step);
             }
@@ -124,7 +131,16 @@ private:
         if (surface.terrain) side = 1;
         v.side = side != 0 ? side : before >= 0 ? 1 : -1;
         v.distance = area > 0 ? v.side * height / area : particle.radius;
+        v.pressing = pressing(v.distance, length(push), shares);
         return area > 0 || rim;
+    }
+
+    /// Discs that one edge cuts have shares that add up to 1 at most. Where they add up to 2, as between two walls, none knows of
+    /// the other, and both press as planes do. `push` is an area over pi.
+    GR_HD double pressing(double mean, double push, double shares) const {
+        const double square = particle.radius * particle.radius - push, distance = square > 0 ? sqrt(square) : 0, more = distance - fabs(mean);
+        const double convex = shares < 1 ? 1 : shares < 2 ? 2 - shares : 0;
+        return more > 0 ? mean + more * convex : mean;
     }
 
     /// The centre left the facet's other side, having touched it, or came from one side and is beyond the other.
@@ -171,7 +187,7 @@ private:
             const bool rim = entries.shares[e] == touched_by_rim;
             const double height = dot(t.normal, v.x - t.a);
             Vec3d n = t.normal * v.side;
-            double distance = v.side * height, weight = entries.shares[e] * ((particle.radius + distance) / (particle.radius + v.distance));
+            double distance = v.side * height, weight = entries.shares[e] * ((particle.radius + distance) / (particle.radius + v.pressing));
             if (rim) {
                 const Vec3d apart = v.x - shapes.section_of(surface, entries.facets[e], t, v.x, particle.radius).nearest;
                 distance = length(apart);

@@ -132,11 +132,11 @@ TEST_P(OnTerrain, PilesAreStillFarFromTheMiddleToo) {
             c.add(p + Vec3d{place, 0, 0}, 0.1);
         }
     Simulation s = c.start(GetParam());
-    s.run(20000);
+    s.run(40000);
     const Frame f = s.frame();
     double fastest[5] = {};
     for (std::size_t i = 0; i < f.size(); ++i) fastest[f.id[i] / pile.size()] = std::max(fastest[f.id[i] / pile.size()], double{length(f.velocity[i])});
-    EXPECT_LT(fastest[2], 1e-3);  // one grain rolls on, with nothing to stop it
+    EXPECT_LT(fastest[2], 1e-5);  // later than 4 s: one grain rolls long, with little to stop it
     for (const int k : {0, 1, 3, 4}) EXPECT_EQ(fastest[k], fastest[2]) << places[k];
 }
 
