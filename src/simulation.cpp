@@ -64,7 +64,7 @@ void Simulation::Impl::skip(std::uint64_t steps) {
 void Simulation::Impl::tune_interval() {
     IntervalTuner::Life life{static_cast<double>(state.age.steps), static_cast<double>(state.age.limit), static_cast<double>(state.grains.partners.size()),
                              static_cast<double>(state.size()), state.age.widening, profile.neighbors - list_start.neighbors,
-                             profile.contacts + profile.fused - list_start.contacts - list_start.fused};
+                             profile.contacts + profile.fused - list_start.contacts - list_start.fused, profile.boundary - list_start.boundary};
     if (life.early() && tuner.looks()) {
         Timed timed(profile.neighbors);
         const Leaver leaver = stage.list_end(state, constants);

@@ -26,7 +26,8 @@ public:
         double steps, limit;  ///< how long it lasted, and would have at most
         double entries, particles;
         double widening;      ///< w
-        double update_seconds, contact_seconds;  ///< its making; the forces of all its steps
+        double update_seconds, contact_seconds;  ///< its making; the forces of pairs in all its steps (fused: whole steps)
+        double boundary_seconds = 0;             ///< the forces of planes and facets in all its steps
         /// The particle that left its margin: m and v a step, in radii; 0 where a wider margin was no use to it, or nobody looked.
         double leaver_margin = 0, leaver_speed = 0;
         bool early() const { return steps < limit; }
@@ -56,13 +57,14 @@ public:
 
     void finished(const Life& life) {
         if (life.steps == 0 || life.entries == 0 || life.widening <= 0) return;
-        if (!(life.update_seconds > 0 && life.contact_seconds > 0)) return;  // a caller has set its profile to zero meanwhile
+        if (!(life.update_seconds > 0 && life.contact_seconds > 0 && life.boundary_seconds >= 0)) return;  // a caller has set its profile to zero meanwhile
         smooth(update_, life.update_seconds);
         smooth(contact_, life.contact_seconds);
-        const double u = update_ / (update_ + contact_);
-        const Slopes::Pair expected = model(life, u);
+        smooth(boundary_, life.boundary_seconds);
+        const double all = update_ + contact_ + boundary_, u = update_ / all;
+        const Slopes::Pair expected = model(life, u, contact_ / all);
         if (shortened_) slopes_.interrupt();  // it was made twice
-        else slopes_.learn(u * std::log(life.update_seconds) + (1 - u) * std::log(life.contact_seconds / life.steps),
+        else slopes_.learn(u * std::log(life.update_seconds) + (1 - u) * std::log((life.contact_seconds + life.boundary_seconds) / life.steps),
                            {std::log(life.limit), skin() / margin_}, expected);
         shortened_ = false;
         most_ = std::min<double>(1.04 * most_, longest);  // what was too large may fit again when motion calms down
@@ -93,10 +95,11 @@ private:
     /// -1 or 1: where in the square the present list stands.
     double corner(int knob) const { return (lists_ + (knob == 0 ? 1 : 0)) % 4 < 2 ? 1 : -1; }
 
-    /// u d ln U + (1 - u) d ln C, for d ln N and for d s over leavers' margins.
-    Slopes::Pair model(const Life& life, double u) const {
+    /// u d ln U + (1 - u) d ln C, for d ln N and for d s over leavers' margins. Of C the model knows pairs, which have the share c;
+    /// candidates of facets are measured alone.
+    Slopes::Pair model(const Life& life, double u, double c) const {
         const double w = life.widening, of_update = life.entries / (life.entries + entries_worth_a_particle * life.particles);
-        const double widening = (u * of_update + (1 - u) * candidate_share) * 3 / (1 + w);
+        const double widening = (u * of_update + c * candidate_share) * 3 / (1 + w);
         return {widening * std::max(w - skin(), 0.05 * w), widening * margin_};
     }
 
@@ -118,7 +121,7 @@ private:
     double interval_, skin_;
     bool interval_fixed_, skin_fixed_, shortened_ = false;
     std::uint32_t lists_ = 0;
-    double update_ = 0, contact_ = 0;  ///< seconds of a list lately
+    double update_ = 0, contact_ = 0, boundary_ = 0;  ///< seconds of a list lately
     double margin_ = 0.1;              ///< of leavers lately, radii
     double most_ = longest;            ///< steps that fit lately
     Slopes slopes_;

@@ -13,17 +13,19 @@ struct World {
     double own = 0.01, shear = 0, speed = 0;  // speed 0: nobody leaves early
     double by_interval = 0, by_skin = 0;      // extra
     double particles = 1000, touching = 2000;
+    double facets = 0;                        // a step also costs this for each entry: candidates of facets grow as entries do
 
     double widening(double n, double s) const { return (own + shear) * n + s; }
     double entries(double n, double s) const { return touching * std::pow(1 + widening(n, s), 3); }
     double update(double n, double s) const { return 60 * (3.4 * particles + entries(n, s)); }
     double contact(double n, double s) const { return entries(n, s) * std::pow(1 + own * n, by_interval) * std::pow(1 + s, by_skin); }
+    double boundary(double n, double s) const { return facets * entries(n, s); }
     static constexpr double speeds[] = {1.2, 0.7, 1, 0.6, 1.5};  // of those who leave one list after the other, over `speed`
     double life(double n, double s, double v) const { return v > 0 ? std::min(std::floor(n), std::ceil((own * n + s) / v)) : std::floor(n); }
     double cost(double n, double s) const {  // of a step
         double steps = 0;
         for (const double v : speeds) steps += life(n, s, v * speed) / std::size(speeds);
-        return update(n, s) / steps + contact(n, s);
+        return update(n, s) / steps + contact(n, s) + boundary(n, s);
     }
 
     double least() const {
@@ -35,7 +37,7 @@ struct World {
     /// The k-th list.
     IntervalTuner::Life list(const IntervalTuner& tuner, std::size_t k = 0, double noise = 1) const {
         const double n = tuner.interval(), s = tuner.skin(), v = speed * speeds[k % std::size(speeds)], steps = life(n, s, v);
-        IntervalTuner::Life l{steps, std::floor(n), entries(n, s), particles, widening(n, s), noise * update(n, s), steps * contact(n, s)};
+        IntervalTuner::Life l{steps, std::floor(n), entries(n, s), particles, widening(n, s), noise * update(n, s), steps * contact(n, s), steps * boundary(n, s)};
         if (l.early()) l.leaver_margin = own * n + s, l.leaver_speed = v;
         return l;
     }
@@ -89,6 +91,15 @@ TEST(IntervalTuner, MeasuresWhatNoModelKnows) {  // a boulder's row grows with t
     EXPECT_LT(b.cost, 1.08 * runaway.least());
     EXPECT_LT(a.skin, 0.5 * b.skin);
     EXPECT_GT(a.interval, 1.2 * b.interval);
+}
+
+TEST(IntervalTuner, CandidatesOfFacetsCostStepsToo) {
+    World world{0.01, 0, 0.02};
+    const Settled without = settle(world);
+    world.facets = 3;
+    const Settled there = settle(world);
+    EXPECT_LT(there.cost, 1.04 * world.least());
+    EXPECT_LT(there.interval, 0.8 * without.interval);
 }
 
 TEST(IntervalTuner, TriesEitherKnobWithoutTheOther) {
@@ -154,6 +165,7 @@ TEST(IntervalTuner, IgnoresAListWhoseTimesWereTakenAway) {  // a caller may set 
     const double interval = tuner.interval(), skin = tuner.skin();
     tuner.finished({20, 20, 1000, 100, 0.1, -5.0, -3.0});
     tuner.finished({20, 24, 1000, 100, 0.1, -5.0, 0.1});
+    tuner.finished({20, 24, 1000, 100, 0.1, 5.0, 0.1, -1.0});
     EXPECT_EQ(tuner.interval(), interval);
     EXPECT_EQ(tuner.skin(), skin);
     EXPECT_EQ(tuner.reason(), "");
@@ -163,7 +175,7 @@ TEST(IntervalTuner, LeavesAloneWhatIsFixed) {
     IntervalTuner both(33, 0.1), interval(33, 0), skin(0, 0.1);
     EXPECT_FALSE(both.looks());
     for (int k = 0; k < 20; ++k) {
-        for (IntervalTuner* t : {&both, &interval, &skin}) t->finished({10, 33, 3000, 1000, 0.4, 10, 0.1, 0.3, 0.03});
+        for (IntervalTuner* t : {&both, &interval, &skin}) t->finished({10, 33, 3000, 1000, 0.4, 10, 0.1, 0, 0.3, 0.03});
         EXPECT_EQ(both.interval(), 33);
         EXPECT_EQ(both.skin(), 0.1);
         EXPECT_EQ(interval.interval(), 33);
