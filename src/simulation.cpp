@@ -73,6 +73,8 @@ void Simulation::Impl::tune_interval() {
             life.leaver_speed = leaver.speed / leaver.radius;
         }
     }
+    if (const View<const std::uint8_t> touched = state.grains.touched.view(); touched.size)
+        life.touching = static_cast<double>(std::count(touched.begin(), touched.end(), std::uint8_t{1})) / static_cast<double>(touched.size);
     tuner.finished(life);
     margin_rule.interval = static_cast<float>(tuner.interval());
     margin_rule.least = static_cast<float>(tuner.skin());

@@ -5,7 +5,8 @@
 // How L answers is known from the particle that ended the list: it had the margin m = own N + s r and left at the speed v, so L grows by
 // own / v for a step of N and by r / v for a unit of s; a list that reaches its limit lasts a step more for each of N.
 // How U and C answer a model expects: a part of each goes with the entries, which grow as (1 + w)^3, where w is what searches reach
-// beyond the radius, margins and shear, so all of it but s grows with N. What is off is measured (slopes.hpp): on a GPU
+// beyond the radius, margins and shear, so all of it but s grows with N; an entry more costs a step the less the more of the others
+// touch. What is off is measured (slopes.hpp): on a GPU
 // the few widest margins may cost more than all others, and one boulder's row more than all grains'. For that the knobs of successive
 // lists go round a small square. Choices change the time alone, never the trajectory.
 #pragma once
@@ -30,6 +31,7 @@ public:
         double boundary_seconds = 0;             ///< the forces of planes and facets in all its steps
         /// The particle that left its margin: m and v a step, in radii; 0 where a wider margin was no use to it, or nobody looked.
         double leaver_margin = 0, leaver_speed = 0;
+        double touching = -1;  ///< share of the entries that touch; below 0: not known
         bool early() const { return steps < limit; }
     };
 
@@ -85,7 +87,8 @@ public:
 private:
     static constexpr double side = 0.1;                      ///< half a side of the square, in ln N and, at most, in s over leavers' margins
     static constexpr double entries_worth_a_particle = 3.4;  ///< an update's time a particle over its time an entry
-    static constexpr double candidate_share = 0.4;           ///< what an entry that does not touch costs a step of one on average
+    static constexpr double contacts_cost = 3.1;             ///< of a step: an entry that touches, over one that does not
+    static constexpr double usual_touching = 0.7;            ///< where it is not known
     static constexpr double least_skin = 0.01, widest_skin = 0.4;
 
     static void smooth(double& mean, double value) { mean = mean > 0 ? 0.9 * mean + 0.1 * value : value; }
@@ -95,11 +98,17 @@ private:
     /// -1 or 1: where in the square the present list stands.
     double corner(int knob) const { return (lists_ + (knob == 0 ? 1 : 0)) % 4 < 2 ? 1 : -1; }
 
+    /// What one more entry, which does not touch, costs a step of one on average.
+    static double candidate_share(const Life& life) {
+        const double touching = life.touching < 0 ? usual_touching : life.touching;
+        return 1 / (1 + (contacts_cost - 1) * touching);
+    }
+
     /// u d ln U + (1 - u) d ln C, for d ln N and for d s over leavers' margins. Of C the model knows pairs, which have the share c;
     /// candidates of facets are measured alone.
     Slopes::Pair model(const Life& life, double u, double c) const {
         const double w = life.widening, of_update = life.entries / (life.entries + entries_worth_a_particle * life.particles);
-        const double widening = (u * of_update + c * candidate_share) * 3 / (1 + w);
+        const double widening = (u * of_update + c * candidate_share(life)) * 3 / (1 + w);
         return {widening * std::max(w - skin(), 0.05 * w), widening * margin_};
     }
 

@@ -102,6 +102,21 @@ TEST(IntervalTuner, CandidatesOfFacetsCostStepsToo) {
     EXPECT_LT(there.interval, 0.8 * without.interval);
 }
 
+TEST(IntervalTuner, CandidatesCountForMoreWhereFewTouch) {  // at once, before it is measured
+    const World world{0.01, 0, 0.02};
+    const auto one_list_later = [&](double touching) {
+        IntervalTuner tuner;
+        IntervalTuner::Life list = world.list(tuner);
+        list.touching = touching;
+        tuner.finished(list);
+        return tuner;
+    };
+    const IntervalTuner gas = one_list_later(0), packed = one_list_later(0.7), unknown = one_list_later(-1);
+    EXPECT_LT(gas.interval(), 0.995 * packed.interval());
+    EXPECT_LT(gas.skin(), packed.skin());
+    EXPECT_EQ(unknown.interval(), packed.interval());
+}
+
 TEST(IntervalTuner, TriesEitherKnobWithoutTheOther) {
     const World world{0.004, 0, 0.02};
     IntervalTuner tuner;
