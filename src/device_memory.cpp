@@ -11,16 +11,20 @@ namespace {
 
 // Measured in column collapses of 0.1 to 1.6 million grains on an H100 (benchmarks/results/h100.md).
 constexpr double slot_share = 1.37;     ///< slots of slices over entries: a slice is as wide as its longest row
+constexpr double columns = 14.8;        ///< of histories a row, most of all lists: its slice's row that touches most, and two
 constexpr double contact_sides = 8.5;   ///< of a particle, when the column lands and lists are longest
 constexpr double pool_share = 1.02;     ///< sizes are rounded up by up to a sixteenth
 constexpr double fixed_bytes = 4e6;     ///< scratch of sorts and sums, parameters
-constexpr double facet_rows = 100;      ///< bytes of a row of facets: four of them, their histories, its force
+constexpr double facet_rows = 115;      ///< bytes of a row of facets: two or three of them, their histories, its force
+constexpr double near_facets = 0.15;    ///< of the particles; where more are, as many have fewer neighbours
 constexpr double ray_bytes = 390;       ///< a particle: boxes, tree and slots of OptiX
 constexpr double boulder = 3;           ///< mean radii from which a particle's row widens its slice
 
 constexpr double particle = sizeof(Near) + sizeof(Far) + sizeof(Body) + sizeof(Vec3f) + sizeof(std::uint32_t);
-constexpr double margin = sizeof(Near) + sizeof(Vec3f), row = sizeof(std::uint32_t) + sizeof(std::uint64_t) / 32.0;
-constexpr double slot = sizeof(std::uint32_t) + sizeof(Vec3f);
+constexpr double margin = sizeof(Near) + sizeof(Vec3f), row = sizeof(std::uint32_t) + 2 * sizeof(std::uint64_t) / 32.0;
+constexpr double word = sizeof(std::uint32_t) * (1 + 1 / 32.0);   ///< an entry of a slice: partner, and a number for 32 rows
+constexpr double column = sizeof(Vec3f) * (1 + 1 / 64.0);         ///< of a row, with its share of the spare ones
+constexpr double entry = sizeof(std::uint32_t) + sizeof(Vec3f);   ///< of a list that is not in slices
 
 /// Slots of rows that the small ones around a large particle fill, 32 rows wide. Twice as many are near as touch.
 double boulder_slots(const std::vector<double>& radii) {
@@ -33,7 +37,7 @@ double boulder_slots(const std::vector<double>& radii) {
 
 double surface_bytes(const Scene& scene, double particles, double triangles, double nodes) {
     if (scene.meshes.empty() && !scene.terrain) return 0;
-    return triangles * (sizeof(Triangle) + 4 * sizeof(std::uint32_t)) + nodes * sizeof(double) + particles * (2 * sizeof(std::uint32_t) + 2 * facet_rows);
+    return triangles * (sizeof(Triangle) + 4 * sizeof(std::uint32_t)) + nodes * sizeof(double) + particles * (2 * sizeof(std::uint32_t) + 2 * near_facets * facet_rows);
 }
 
 double sum(const std::vector<MemoryPart>& parts) {
@@ -44,16 +48,16 @@ double sum(const std::vector<MemoryPart>& parts) {
 
 std::vector<MemoryPart> forecast_device_memory(const Scene& scene, double n, const std::vector<double>& radii, const std::string& backend,
                                                double triangles, double nodes) {
-    const double slots = n * planned_entries * slot_share + boulder_slots(radii);
+    const double wide = boulder_slots(radii);
     const bool periodic = scene.domain.periodic[0] || scene.domain.periodic[1] || scene.domain.periodic[2];
     const double planes = scene.planes.empty() ? 1 : 2;  // list and the one before
     const std::vector<MemoryPart> always{{"particles", n * (particle + margin)},
-                                         {"planes", n * planes * (sizeof(std::uint64_t) + 0.2 * slot)},
+                                         {"planes", n * planes * (sizeof(std::uint64_t) + 0.2 * entry)},
                                          {"meshes and terrain", surface_bytes(scene, n, triangles, nodes)},
                                          {"rays", backend == "rays" || backend == "rays-published" ? n * ray_bytes : 0},
                                          {"fixed", fixed_bytes}};
-    const double touching = n * (sizeof(std::uint64_t) + contact_sides * slot), index = n * sizeof(std::uint32_t);
-    const std::vector<MemoryPart> lists{{"lists", n * row + slots * slot}};
+    const double touching = n * (sizeof(std::uint64_t) + 0.5 * contact_sides * entry), index = n * sizeof(std::uint32_t);
+    const std::vector<MemoryPart> lists{{"lists", n * (row + planned_entries * slot_share * word + columns * column) + wide * (word + sizeof(Vec3f))}};
     // The moments: the new list is there and the histories of the old one still are; the search; a step.
     const std::vector<std::vector<MemoryPart>> moments{
         {lists[0], {"histories carried over", touching + index}},

@@ -31,6 +31,7 @@ void add_empty_row(ContactList& list) {
     std::uint64_t end = 0;
     detail::copy(Device::cpu, &end, list.offsets.device(), list.offsets.data() + list.offsets.size() - 1, sizeof end);
     list.offsets.append({end});
+    if (list.counts.size()) list.counts.append({0});
 }
 
 void restore(std::vector<Feeder>& feeders, const Checkpoint& c) {
@@ -210,6 +211,7 @@ void Simulation::Impl::close_lists() {
         resize_blocks();
         make_lists();
     } else {  // no row is anybody's
+        old_grains.release();
         old_grains.offsets.assign(std::vector<std::uint64_t>{0});
         old_walls.offsets.assign(std::vector<std::uint64_t>{0});
         state.facets.list = FacetList(options.device);

@@ -38,15 +38,14 @@ struct Scenery {
     /// Fixed-point position, inside the periodic box.
     GR_HD Vec3l position(std::size_t i) const { return into_box(join(near[i], far[i]), period, period_lower); }
 
-    /// visit(j, separation, entry) for the touching pairs of row i; each pair comes once in all.
+    /// visit(j, separation, k) for the touching pairs of row i, entry k; each pair comes once in all.
     template <class Visit>
     GR_HD void for_each_pair(std::size_t i, const Visit& visit) const {
         for (std::uint32_t k = 0, end = rows.size(i); k < end; ++k) {
-            const std::uint64_t e = rows.entry(i, k);
-            const std::uint32_t j = rows.partner(e);
+            const std::uint32_t j = rows.partner(i, k);
             if (i / block != j / block && j > i) continue;  // stands in both rows
             const Separation apart = separation(near[i], far[i], near[j], far[j], period);
-            if (apart.gap > 0) visit(j, apart, e);
+            if (apart.gap > 0) visit(j, apart, k);
         }
     }
     /// visit(plane, overlap, entry)
@@ -102,9 +101,9 @@ struct FieldsOf {
     }
     GR_HD void operator()(std::size_t i) const {
         const Body& a = view.body[i];
-        view.for_each_pair(i, [&](std::uint32_t j, const Separation& apart, std::uint64_t e) {
+        view.for_each_pair(i, [&](std::uint32_t j, const Separation& apart, std::uint32_t k) {
             const Body& b = view.body[j];
-            Vec3f h = view.rows.history(e);
+            Vec3f h = view.rows.history(i, k);
             const PairForce f = pair_force(law, apart, view.near[i].radius, view.near[j].radius, a.velocity - b.velocity, a.spin, b.spin,
                                            0.5f * (a.mass + b.mass), view.grain_parameters[a.material * view.materials + b.material],
                                            static_cast<float>(view.scale.unit), h);
@@ -140,7 +139,7 @@ Totals totals(const State& s, const Vec3d& gravity) {
         t.max_speed = sqrt(dot(v, v));
         t.lower = x - Vec3d{r, r, r};
         t.upper = x + Vec3d{r, r, r};
-        view.for_each_pair(i, [&](std::uint32_t j, const Separation& apart, std::uint64_t) {
+        view.for_each_pair(i, [&](std::uint32_t j, const Separation& apart, std::uint32_t) {
             t.max_overlap_ratio = fmax(t.max_overlap_ratio, view.overlap(i, j, apart) / fmin(r, view.radius(j)));
             t.contact_sides += 2;
             ++t.contacts;
@@ -180,8 +179,8 @@ std::uint64_t hash(const State& s) {
         std::uint64_t h = mix(mix(1, a), view.position(i));
         h = mix(mix(mix(h, view.body[i].velocity), view.remainder[i]), view.body[i].spin);
         std::uint64_t sum = mix(h, static_cast<std::uint64_t>(view.near[i].radius));
-        view.for_each_pair(i, [&](std::uint32_t j, const Separation&, std::uint64_t e) {
-            const Vec3f history = view.rows.history(e);
+        view.for_each_pair(i, [&](std::uint32_t j, const Separation&, std::uint32_t k) {
+            const Vec3f history = view.rows.history(i, k);
             const std::uint32_t b = view.id[j];
             if (!(history == Vec3f{})) sum += a > b ? mix(mix(mix(2, a), b), history) : mix(mix(mix(2, b), a), -history);
         });
@@ -199,7 +198,7 @@ bool healthy(const State& s, const HealthLimits& limits) {
         const double spin = dot(w, w), r = view.radius(i);
         bool good = dot(v, v) <= limits.speed * limits.speed && spin - spin == 0;
         for (int k = 0; k < 3; ++k) good = good && x[k] >= limits.lower[k] && x[k] <= limits.upper[k];
-        view.for_each_pair(i, [&](std::uint32_t j, const Separation& apart, std::uint64_t) {
+        view.for_each_pair(i, [&](std::uint32_t j, const Separation& apart, std::uint32_t) {
             good = good && view.overlap(i, j, apart) <= limits.overlap * fmin(r, view.radius(j));
         });
         view.for_each_wall(i, [&](std::uint32_t, double overlap, std::uint64_t) { good = good && overlap <= limits.overlap * r; });

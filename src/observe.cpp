@@ -172,6 +172,7 @@ SearchReport Simulation::search() const {
     r.reason = s.search.reason();
     if (const std::string lists = s.tuner.reason(); !lists.empty()) r.reason += "; " + lists;
     r.rebuilds = s.rebuilds;
+    r.finished_steps = s.state.grains.finished;
     if (s.rebuilds) r.mean_interval_steps = static_cast<double>(s.steps_since_start) / static_cast<double>(s.rebuilds);
     if (s.state.size() == 0 || s.rebuilds == 0) return r;
     const ListFigures figures = s.stage.list_figures(s.state);

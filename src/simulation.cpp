@@ -99,6 +99,7 @@ void Simulation::Impl::update_lists() {
 /// Sort, margins, search, then the histories of the old lists into the new ones.
 void Simulation::Impl::make_lists() {
     stage.sort(state, old_grains, rows, old_index);
+    old_grains.counts.release();  // only the order is by them
     find_pairs();
     stage.list_pairs(state, found, old_grains, old_index);
     stage.list_walls(state, constants, old_walls, old_index);

@@ -8,22 +8,34 @@
 namespace grainray {
 
 /// Rows of candidates with the tangential history of each: particle-particle or particle-plane. One row after the other,
-/// except the particle pairs of CUDA, which stand in slices (src/exec/rows_cuda.hpp); only those have `counts`.
+/// except the particle pairs of CUDA, which stand in slices (src/exec/rows_cuda.hpp); only those use what is marked so.
 struct ContactList {
-    explicit ContactList(Device device) : offsets(device), counts(device), partners(device), history(device), touched(device) {}
+    explicit ContactList(Device device)
+        : offsets(device), counts(device), partners(device), history(device), touched(device), columns(device), spares(device),
+          spare_history(device) {}
     Array<std::uint64_t> offsets;
-    Array<std::uint32_t> counts;
+    Array<std::uint32_t> counts;       ///< slices: length of each row; of an old list, how many of a row touched
     Array<std::uint32_t> partners;
     Array<Vec3f> history;
-    Array<std::uint8_t> touched;  ///< 1 where a history may be other than zero; the CPU's pair loop alone
+    Array<std::uint8_t> touched;       ///< 1 where a history may be other than zero; the CPU's pair loop alone
+    Array<std::uint64_t> columns;      ///< slices: first column of histories of each
+    Array<std::uint32_t> spares;       ///< slices: spare columns that entries have taken
+    Array<Vec3f> spare_history;        ///< slices: the spare columns
+    std::uint64_t finished = 0;        ///< slices: steps that ran out of spare columns and were finished with more
     void release() {
         offsets.release();
         counts.release();
         partners.release();
         history.release();
         touched.release();
+        columns.release();
+        spares.release();
+        spare_history.release();
     }
-    std::size_t bytes() const { return offsets.bytes() + counts.bytes() + partners.bytes() + history.bytes() + touched.bytes(); }
+    std::size_t bytes() const {
+        return offsets.bytes() + counts.bytes() + partners.bytes() + history.bytes() + touched.bytes() + columns.bytes() + spares.bytes() +
+               spare_history.bytes();
+    }
 };
 
 /// A plane at one instant, relative to the world's origin. Distances are taken in double: a plane reaches far.
@@ -49,7 +61,7 @@ struct State {
     explicit State(Device device)
         : particles(device), wrench(device), next_near(device), next_far(device), next_body(device), built(device), frame(device),
           grains(device), walls(device), grain_parameters(device), wall_parameters(device), planes(device), facets(device),
-          flags(device, 2) {}
+          flags(device, 3) {}
 
     Particles particles;
     Array<Wrench> wrench;   ///< sums of the step under way; the integrator leaves zeros. Not used by the fused step
@@ -67,7 +79,7 @@ struct State {
     Array<PlaneNow> planes; ///< where they are now; of a batch of fused steps with moving planes, one set a step
     std::uint32_t plane_count = 0;
     Facets facets;          ///< meshes and terrain
-    Array<std::uint32_t> flags;  ///< [0] a particle past its margin (fused: the step that saw one), [1] one whose step is not finite; ~0: none
+    Array<std::uint32_t> flags;  ///< [0] a particle past its margin (fused: the step that saw one), [1] one whose step is not finite; ~0: none. [2] fused: spare columns taken
     std::uint32_t materials = 0;
     std::uint32_t block = 1;     ///< of ListKind::blocked
     Quanta quanta;

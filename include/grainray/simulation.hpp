@@ -30,6 +30,7 @@ struct SearchReport {
     double mean_interval_steps = 0;
     double mean_neighbors = 0;  ///< neighbours of a particle in the list, both sides counted
     double mean_margin_ratio = 0;  ///< mean margin / radius at the last rebuild
+    std::uint64_t finished_steps = 0;  ///< CUDA: steps with more new contacts than there was room for, finished after making room
 };
 
 /// What the particles do to a mesh or the terrain at one instant.

@@ -26,9 +26,13 @@ struct Carry {
     OldRows old;
     View<const std::uint32_t> was;
 
+    /// It stands in one row or in both; on CUDA in that of the first particle.
     GR_HD Vec3f history(std::size_t i, std::uint32_t j) const {
+        const bool first = was[i] < was[j];
+        const std::uint32_t a = first ? was[i] : was[j], b = first ? was[j] : was[i];
         Vec3f h{};
-        if (!old.look_up(was[i], was[j], h) && old.look_up(was[j], was[i], h)) return -h;  // it stood in the other row
+        if (old.look_up(a, b, h)) return first ? h : -h;
+        if (old.look_up(b, a, h)) return first ? -h : h;
         return h;
     }
 };
@@ -56,7 +60,7 @@ void touching(const State& s, ContactList& out) {
     const auto offsets = out.offsets.view();
     for_each(n, [=] GR_HD(std::size_t i) {
         std::uint64_t count = 0;
-        for (std::uint32_t k = 0, end = rows.size(i); k < end; ++k) count += touches(i, rows.partner(rows.entry(i, k)));
+        for (std::uint32_t k = 0, end = rows.size(i); k < end; ++k) count += touches(i, rows.partner(i, k));
         offsets[i] = count;
     });
     out.partners.resize_discard(exclusive_scan(offsets));
@@ -66,10 +70,10 @@ void touching(const State& s, ContactList& out) {
     for_each(n, [=] GR_HD(std::size_t i) {
         std::uint64_t slot = offsets[i];
         for (std::uint32_t k = 0, end = rows.size(i); k < end; ++k) {
-            const std::uint64_t e = rows.entry(i, k);
-            if (!touches(i, rows.partner(e))) continue;
-            partners[slot] = rows.partner(e);
-            history[slot++] = rows.history(e);
+            const std::uint32_t j = rows.partner(i, k);
+            if (!touches(i, j)) continue;
+            partners[slot] = j;
+            history[slot++] = rows.history(i, k);
         }
     });
 }
@@ -81,7 +85,7 @@ ListFigures list_figures(const State& s) {
     const double n = static_cast<double>(s.size());
     const ListFigures sum = reduce(s.size(), ListFigures{}, [=] GR_HD(std::size_t i) {
         double sides = 0;
-        for (std::uint32_t k = 0, end = rows.size(i); k < end; ++k) sides += i / block == rows.partner(rows.entry(i, k)) / block ? 2 : 1;
+        for (std::uint32_t k = 0, end = rows.size(i); k < end; ++k) sides += i / block == rows.partner(i, k) / block ? 2 : 1;
         return ListFigures{sides, static_cast<double>(built[i].radius) / near[i].radius};
     }, AddFigures{});
     return {sum.mean_neighbors / n, sum.mean_margin_ratio / n};

@@ -15,6 +15,13 @@ GR_HD inline std::uint32_t lowest_bit(std::uint32_t bits) {
     return static_cast<std::uint32_t>(std::countr_zero(bits));
 #endif
 }
+GR_HD inline std::uint32_t lowest_bit(std::uint64_t bits) {
+#if defined(__CUDA_ARCH__)
+    return __ffsll(static_cast<long long>(bits)) - 1;
+#else
+    return static_cast<std::uint32_t>(std::countr_zero(bits));
+#endif
+}
 GR_HD inline std::uint32_t bits_set(std::uint32_t bits) {
 #if defined(__CUDA_ARCH__)
     return __popc(bits);

@@ -15,9 +15,9 @@ struct Rows {
           histories{const_cast<Vec3f*>(list.history.data()), list.history.size()} {}
 
     std::uint32_t size(std::size_t i) const { return static_cast<std::uint32_t>(offsets[i + 1] - offsets[i]); }
-    std::uint64_t entry(std::size_t i, std::uint32_t k) const { return offsets[i] + k; }
-    std::uint32_t partner(std::uint64_t e) const { return partners[e]; }
-    Vec3f history(std::uint64_t e) const { return histories[e]; }
+    /// Of entry k of row i.
+    std::uint32_t partner(std::size_t i, std::uint32_t k) const { return partners[offsets[i] + k]; }
+    Vec3f history(std::size_t i, std::uint32_t k) const { return histories[offsets[i] + k]; }
 };
 
 /// What was found becomes the list's rows; `found` keeps the memory of the list before. carry.touches(i, j),

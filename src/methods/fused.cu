@@ -1,6 +1,8 @@
 // DEM on CUDA: contacts, planes and motion as one kernel a step, so that a particle's state crosses the memory bus once.
 // A batch of steps is launched without waiting. A step that sees a particle past its margin is complete, and those after it
 // find State::flags[0] below their own number and return; the host reads the flag once a batch.
+// A row whose histories find no column (exec/rows_cuda.hpp) leaves everything as it is, is marked and ends the batch in the
+// same way; the host makes room and has the marked rows do the step.
 #include "boundary/plane_contact.hpp"
 #include "contacts/laws.hpp"
 #include "dynamics/motion.hpp"
@@ -11,7 +13,8 @@
 namespace grainray::cuda {
 namespace {
 
-constexpr unsigned step_threads = 128, step_blocks = 7;  // a multiprocessor: 72 registers a thread; with 64 its loop spills
+constexpr unsigned step_threads = pair_threads, step_blocks = 7;  // a multiprocessor: 72 registers a thread; with 64 its loop spills
+constexpr std::uint32_t unfinished_bit = 1u << 31;       // of the length of a row
 
 __device__ inline void add_to(Wrench& sum, const Wrench& more) {
     for (int a = 0; a < 3; ++a) {
@@ -54,7 +57,17 @@ struct FusedStep {
         Far f{};  // read late where pairs do without it: registers are short
         if constexpr (periodic) f = pairs.far[i];
         Wrench sum{};
-        pairs.add<periodic>(law, i, p, f, b, sum);
+        if (pairs.add<periodic>(law, i, p, f, b, sum)) finish<periodic>(i, step, sum, p, f, b);
+        else {
+            pairs.rows.counts[i] |= unfinished_bit;
+            atomicMin(&flags[0], step);
+            wait_for_first();
+        }
+    }
+
+    /// Planes, facets and motion of particle i.
+    template <bool periodic>
+    __device__ void finish(std::uint32_t i, std::uint32_t step, Wrench& sum, Near& p, Far& f, Body& b) const {
         if constexpr (!periodic) f = pairs.far[i];
         if (planes.offsets[i] != planes.offsets[i + 1])
             planes.add(i, convert<double>(join(p, f)) * fine, p.radius, b, planes_move ? std::size_t{step} * planes.plane_count : 0, sum);
@@ -75,11 +88,18 @@ struct FusedStep {
     }
 };
 
+/// Of all rows, or of those left unfinished.
 template <bool periodic, class Law>
-__global__ void __launch_bounds__(step_threads, step_blocks) step_kernel(FusedStep<Law> fused, std::uint32_t step) {
+__global__ void __launch_bounds__(step_threads, step_blocks) step_kernel(FusedStep<Law> fused, std::uint32_t step, bool unfinished) {
     if (*static_cast<const volatile std::uint32_t*>(fused.flags) < step) return wait_for_first();
     const std::uint32_t i = blockIdx.x * blockDim.x + threadIdx.x;
-    if (i < fused.size) fused.template operator()<periodic>(i, step);
+    if (i >= fused.size) return;
+    if (unfinished) {
+        std::uint32_t& count = fused.pairs.rows.counts[i];
+        if (!(count & unfinished_bit)) return;
+        count &= ~unfinished_bit;
+    }
+    fused.template operator()<periodic>(i, step);
 }
 
 void swap_state(State& s) {
@@ -88,19 +108,61 @@ void swap_state(State& s) {
     if (s.next_far.size()) s.particles.far.swap(s.next_far);
 }
 
-template <bool periodic, class Law>
-void launch(State& s, ContactLaw name, const Law& law, const StepConstants& constants, float trigger, std::uint32_t steps) {
-    const unsigned blocks = static_cast<unsigned>((s.size() + step_threads - 1) / step_threads);
-    for (std::uint32_t step = 0; step < steps; ++step) {
-        const FusedStep<Law> fused(s, law, constants, trigger);
-        if (s.facets.list.rows() > 0) {
-            facets(s, name, constants, step, FacetTarget::rows);
-            launch_second(step_kernel<periodic, Law>, blocks, step_threads, fused, step);
-        } else step_kernel<periodic><<<blocks, step_threads>>>(fused, step);
-        swap_state(s);
-    }
-    check(cudaGetLastError(), "launch of a step");
+using Flags = std::array<std::uint32_t, 3>;
+
+Flags read_flags(const State& s) {
+    Flags flags;
+    check(cudaMemcpy(flags.data(), s.flags.data(), sizeof flags, cudaMemcpyDeviceToHost), "step");
+    return flags;
 }
+
+template <bool periodic, class Law>
+struct Batch {
+    State& s;
+    ContactLaw name;
+    const Law& law;
+    const StepConstants& constants;
+    float trigger;
+
+    unsigned blocks() const { return static_cast<unsigned>((s.size() + step_threads - 1) / step_threads); }
+
+    void launch(std::uint32_t step, bool unfinished) const {
+        step_kernel<periodic><<<blocks(), step_threads>>>(FusedStep<Law>(s, law, constants, trigger), step, unfinished);
+        check(cudaGetLastError(), "launch of a step");
+    }
+
+    /// The rows of a step that found no column. A first look may not tell all that is missing.
+    void finish(std::uint32_t step, Flags flags) const {
+        swap_state(s);
+        for (std::uint32_t spares = spare_columns(s.grains); flags[spares_flag] > spares; flags = read_flags(s)) {
+            detail::copy(device, s.flags.data() + spares_flag, Device::cpu, &spares, sizeof spares);
+            resize_spares(s.grains, 2 * std::size_t{flags[spares_flag]});
+            spares = spare_columns(s.grains);
+            launch(step, true);
+        }
+        swap_state(s);
+        ++s.grains.finished;
+    }
+
+    /// Returns the steps done.
+    std::uint32_t run(std::uint32_t steps) const {
+        for (std::uint32_t step = 0; step < steps; ++step) {
+            if (s.facets.list.rows() > 0) {
+                facets(s, name, constants, step, FacetTarget::rows);
+                launch_second(step_kernel<periodic, Law>, blocks(), step_threads, FusedStep<Law>(s, law, constants, trigger), step, false);
+            } else launch(step, false);
+            swap_state(s);
+        }
+        const Flags flags = read_flags(s);
+        const bool stopped = flags[0] != ~0u;
+        const std::uint32_t done = stopped ? flags[0] + 1 : steps;
+        if ((steps - done) % 2) swap_state(s);  // the steps that returned at once wrote nothing
+        if (flags[spares_flag] > spare_columns(s.grains)) finish(flags[0], flags);
+        s.age.steps += done;
+        s.age.outdated = stopped || s.age.steps >= s.age.limit;
+        return done;
+    }
+};
 
 }  // namespace
 
@@ -109,20 +171,14 @@ std::uint32_t fused(State& s, ContactLaw law, const StepConstants& constants, fl
     s.next_near.resize_discard(s.size());
     s.next_body.resize_discard(s.size());
     if (periodic) s.next_far.resize_discard(s.size());
+    std::uint32_t done = 0;
     with_law(law, constants.dt, [&](auto functor) {
-        if (periodic) launch<true>(s, law, functor, constants, trigger, steps);
-        else launch<false>(s, law, functor, constants, trigger, steps);
+        if (periodic) done = Batch<true, decltype(functor)>{s, law, functor, constants, trigger}.run(steps);
+        else done = Batch<false, decltype(functor)>{s, law, functor, constants, trigger}.run(steps);
     });
-    std::uint32_t stop = 0;
-    check(cudaMemcpy(&stop, s.flags.data(), sizeof stop, cudaMemcpyDeviceToHost), "step");
-    const bool stopped = stop != ~0u;
-    const std::uint32_t done = stopped ? stop + 1 : steps;
-    if ((steps - done) % 2) swap_state(s);  // the steps that returned at once wrote nothing
     s.next_near.release();
     s.next_body.release();
     s.next_far.release();
-    s.age.steps += done;
-    s.age.outdated = stopped || s.age.steps >= s.age.limit;
     return done;
 }
 

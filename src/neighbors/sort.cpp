@@ -84,13 +84,14 @@ void sort(State& s, const ContactList& old_list, const Array<std::uint32_t>& row
     const auto key = keys.view();
     const Vec3l lo = bounds.lo;
     const auto contacts = old_list.offsets.view();
+    const auto counts = old_list.counts.view();
     const auto row_of = rows.view();
     for_each(n, [=] GR_HD(std::size_t i) {
         const Vec3l q = join(near[i], far[i]);
         const std::uint64_t code = neighbors::morton((q.x >> cell_shift) - lo.x, (q.y >> cell_shift) - lo.y, (q.z >> cell_shift) - lo.z);
         constexpr std::uint64_t most = (1 << contact_bits) - 1;
         const std::size_t row = row_of.size ? row_of[i] : i;
-        const std::uint64_t count = contacts[row + 1] - contacts[row];
+        const std::uint64_t count = counts.size ? counts[row] : contacts[row + 1] - contacts[row];
         key[i] = code << contact_bits | (count < most ? count : most);
         order[i] = static_cast<std::uint32_t>(i);
     });

@@ -227,6 +227,7 @@ void margins(State& s, const StepConstants& constants, const MarginRule& rule, A
         whole->longest = fmaxf(extent, largest_coordinate(whole->bounds));
         whole->steps = longest_life(whole->extremes, rule.interval, rule.most_units, fminf(whole->longest / largest * 5e-7f, drift - 0.1f));
         flags[0] = flags[1] = ~0u;
+        flags[2] = 0;
     });
 
     const auto near = s.particles.near.view(), built = s.built.view();
