@@ -145,7 +145,7 @@ struct PairRows {
         const Row row{static_cast<std::uint32_t>(rows.starts[slice] / slice_rows), first, static_cast<std::uint32_t>(rows.columns[slice + 1]) - first, i % slice_rows};
         __shared__ Sums sums;
         for (auto& of_axis : sums) of_axis[threadIdx.x] = 0;
-        bool room = true;  // one way out: an early return would keep lanes apart from here on
+        bool room = true;
         for (std::uint32_t start = 0; start < size; start += 64) {
             Chunk chunk = tested<periodic>(p, f, word(row, start), min(size - start, 32u));
             if (size - start > 32) {
@@ -160,7 +160,7 @@ struct PairRows {
                     room = chunk.touching;
                 }
             }
-            // Most by far, and apart from the rest: a loop that may read what others write would leave lanes apart after it.
+            // Most by far, and apart from the rest: a loop with a load past L1 lets lanes go on by themselves (YIELD) after it.
             const auto usual = static_cast<std::uint32_t>(row.own < 32 ? chunk.touching & ((1u << row.own) - 1) : chunk.touching);
             evaluate<periodic>(law, row, start, usual, [&](std::uint32_t k) { return own_column(row, k); }, p, f, a, sums);
             if (const std::uint64_t rest = chunk.touching ^ usual)

@@ -65,6 +65,7 @@ inline std::uint32_t spare_columns(const ContactList& list) { return static_cast
 /// Spare columns from now on. Those that are taken keep what they hold.
 inline void resize_spares(ContactList& list, std::size_t spares) {
     Array<Vec3f> larger(device, spares * slice_rows);
+    larger.clear_bytes();  // they may be copied before every row has written its part
     const std::size_t kept = std::min(larger.size(), list.spare_history.size());
     if (kept) detail::copy(device, larger.data(), device, list.spare_history.data(), kept * sizeof(Vec3f));
     list.spare_history.swap(larger);
