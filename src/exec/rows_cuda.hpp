@@ -2,7 +2,7 @@
 // side, so that a warp reads whole cache lines. A slice is as wide as its longest row. The upper bit of a partner says that
 // the pair touched when it was last evaluated: only then does it have a history.
 // Histories stand in columns, 32 rows wide, and a slice has fewer of them than entries: as many as its row that touches most
-// needs when the list is made, and one more. Pairs that begin to touch change places with others so as to stand there
+// needs when the list is made, and two more. Pairs that begin to touch change places with others so as to stand there
 // (exec/pairs_cuda.hpp); entries beyond that touch all the same take spare columns, which all slices share.
 #pragma once
 
