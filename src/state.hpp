@@ -7,12 +7,18 @@
 
 namespace grainray {
 
+/// What is kept of a pair that touched: one 16-byte read.
+struct alignas(16) KeptPair {
+    std::uint32_t partner;
+    Vec3f history;
+};
+
 /// Rows of candidates with the tangential history of each: particle-particle or particle-plane. One row after the other,
 /// except the particle pairs of CUDA, which stand in slices (src/exec/rows_cuda.hpp); only those use what is marked so.
 struct ContactList {
     explicit ContactList(Device device)
         : offsets(device), counts(device), partners(device), history(device), touched(device), columns(device), spares(device),
-          spare_history(device) {}
+          spare_history(device), kept(device) {}
     Array<std::uint64_t> offsets;
     Array<std::uint32_t> counts;       ///< slices: length of each row; of an old list, how many of a row touched
     Array<std::uint32_t> partners;
@@ -21,6 +27,7 @@ struct ContactList {
     Array<std::uint64_t> columns;      ///< slices: first column of histories of each
     Array<std::uint32_t> spares;       ///< slices: spare columns that entries have taken
     Array<Vec3f> spare_history;        ///< slices: the spare columns
+    Array<KeptPair> kept;              ///< slices: of an old list, instead of partners and history
     std::uint64_t finished = 0;        ///< slices: steps that ran out of spare columns and were finished with more
     void release() {
         offsets.release();
@@ -31,10 +38,11 @@ struct ContactList {
         columns.release();
         spares.release();
         spare_history.release();
+        kept.release();
     }
     std::size_t bytes() const {
         return offsets.bytes() + counts.bytes() + partners.bytes() + history.bytes() + touched.bytes() + columns.bytes() + spares.bytes() +
-               spare_history.bytes();
+               spare_history.bytes() + kept.bytes();
     }
 };
 

@@ -2,6 +2,7 @@
 // particles near a facet and adds to State::wrench, so that it may run before or after any other force.
 #include "boundary/facet_contact.hpp"
 #include "contacts/laws.hpp"
+#include "contacts/old_rows.hpp"
 #include "exec/exec.hpp"
 #include "exec/overlap.hpp"
 #include "stages.hpp"
@@ -69,7 +70,7 @@ void list_facets(State& s, const StepConstants& constants, const Array<std::uint
         counts[i] = count;
     }, 256);
     for_each(n + 1, [=] GR_HD(std::size_t i) { number[i] = i < n && counts[i] > 0; });
-    const std::size_t rows = exclusive_scan(number);
+    const std::size_t rows = starts_of_rows(number);
 
     list.row_of.resize_discard(n);
     list.particles.resize_discard_slack(rows);
@@ -84,11 +85,12 @@ void list_facets(State& s, const StepConstants& constants, const Array<std::uint
         particles[number[i]] = static_cast<std::uint32_t>(i);
         offsets[number[i]] = counts[i];
     });
-    list.facets.resize_discard_slack(exclusive_scan(offsets));
+    list.facets.resize_discard_slack(starts_of_rows(offsets));
     list.states.resize_discard_slack(list.facets.size());
     list.shares.resize_discard_slack(list.facets.size());
 
-    const auto was = old_index.view(), old_row = old_list.row_of.view();
+    const OldIndex was(old_index);
+    const auto old_row = old_list.row_of.view();
     const auto facets = list.facets.view();
     const auto old_facets = old_list.facets.view();
     const auto old_offsets = old_list.offsets.view();

@@ -39,10 +39,10 @@ void list_walls(State& s, const StepConstants& constants, const ContactList& old
         for (std::size_t q = 0; q < planes; ++q) count += reachable(i, q);
         offsets[i] = count;
     });
-    s.walls.partners.resize_discard_slack(exclusive_scan(offsets));
+    s.walls.partners.resize_discard_slack(starts_of_rows(offsets));
     s.walls.history.resize_discard_slack(s.walls.partners.size());
     const OldRows old(old_list);
-    const auto was = old_index.view();
+    const OldIndex was(old_index);
     const auto partners = s.walls.partners.view();
     const auto history = s.walls.history.view();
     for_each(n, [=] GR_HD(std::size_t i) {

@@ -24,7 +24,7 @@ struct Touches {
 struct Carry {
     Touches touches;
     OldRows old;
-    View<const std::uint32_t> was;
+    OldIndex was;
 
     /// It stands in one row or in both; on CUDA in that of the first particle.
     GR_HD Vec3f history(std::size_t i, std::uint32_t j) const {
@@ -48,7 +48,7 @@ struct AddFigures {
 void retire(State& s, ContactList& old_list) { keep_live(s.grains, old_list); }
 
 void list_pairs(State& s, NeighborList& found, const ContactList& old_list, const Array<std::uint32_t>& old_index) {
-    lay_out(found, Carry{Touches(s), OldRows(old_list), old_index.view()}, s.grains);
+    lay_out(found, Carry{Touches(s), OldRows(old_list), OldIndex(old_index)}, s.grains);
 }
 
 void touching(const State& s, ContactList& out) {
@@ -63,7 +63,7 @@ void touching(const State& s, ContactList& out) {
         for (std::uint32_t k = 0, end = rows.size(i); k < end; ++k) count += touches(i, rows.partner(i, k));
         offsets[i] = count;
     });
-    out.partners.resize_discard(exclusive_scan(offsets));
+    out.partners.resize_discard(starts_of_rows(offsets));
     out.history.resize_discard(out.partners.size());
     const auto partners = out.partners.view();
     const auto history = out.history.view();

@@ -5,19 +5,36 @@
 
 namespace grainray {
 
+/// Row of the old lists that a particle has.
+struct OldIndex {
+    View<const std::uint32_t> of;  ///< empty: its own number
+
+    explicit OldIndex(const Array<std::uint32_t>& index) : of(index.view()) {}
+    GR_HD std::uint32_t operator[](std::size_t i) const { return of.size ? of[i] : static_cast<std::uint32_t>(i); }
+};
+
 struct OldRows {
     View<const std::uint64_t> offsets;
     View<const std::uint32_t> partners;
     View<const Vec3f> history;
+    View<const KeptPair> kept;  ///< instead of partners and history, where there are any
 
-    explicit OldRows(const ContactList& list) : offsets(list.offsets.view()), partners(list.partners.view()), history(list.history.view()) {}
+    explicit OldRows(const ContactList& list) : offsets(list.offsets.view()), partners(list.partners.view()), history(list.history.view()), kept(list.kept.view()) {}
 
     GR_HD bool look_up(std::uint32_t row, std::uint32_t partner, Vec3f& found) const {
-        for (std::uint64_t e = offsets[row]; e < offsets[row + 1]; ++e)
-            if (partners[e] == partner) {
+        const std::uint64_t end = offsets[row + 1];
+        for (std::uint64_t e = offsets[row]; e < end; ++e) {
+            if (kept.size) {
+                const KeptPair pair = kept[e];
+                if (pair.partner == partner) {
+                    found = pair.history;
+                    return true;
+                }
+            } else if (partners[e] == partner) {
                 found = history[e];
                 return true;
             }
+        }
         return false;
     }
 };

@@ -70,6 +70,9 @@ T exclusive_scan(View<T> values) {
 }
 template <class T>
 void sums_before(View<T> values) { exclusive_scan(values); }
+/// Lengths of rows, and 0 behind the last, become their starts; returns the end of the last.
+template <class T>
+T starts_of_rows(View<T> lengths) { return exclusive_scan(lengths); }
 
 /// Stable radix sort of (keys, values) by the lowest `bits` bits of the keys; `keys2`, `values2` are scratch.
 template <class Key>

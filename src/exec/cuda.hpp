@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cub/block/block_reduce.cuh>
+#include <cub/block/block_scan.cuh>
 #include <cub/device/device_radix_sort.cuh>
 #include <cub/device/device_scan.cuh>
 
@@ -159,6 +160,35 @@ T exclusive_scan(View<T> values) {
     return *total;
 }
 
+constexpr unsigned start_threads = 1024, start_items = 8;
+
+template <class T>
+__global__ void __launch_bounds__(start_threads) starts_kernel(T* lengths, std::size_t n, T* end) {
+    using Scan = cub::BlockScan<T, start_threads>;
+    __shared__ typename Scan::TempStorage room;
+    T items[start_items];
+    for (unsigned k = 0; k < start_items; ++k) items[k] = threadIdx.x * start_items + k < n ? lengths[threadIdx.x * start_items + k] : T{};
+    T sum;
+    Scan(room).ExclusiveSum(items, items, sum);
+    for (unsigned k = 0; k < start_items; ++k)
+        if (threadIdx.x * start_items + k < n) lengths[threadIdx.x * start_items + k] = items[k];
+    if (threadIdx.x == 0) *end = sum;
+}
+
+/// Lengths of rows, and 0 behind the last, become their starts. Waits, and returns the end of the last. One launch where rows are few.
+template <class T>
+T starts_of_rows(View<T> lengths) {
+    if (lengths.size == 0) return T{};
+    if (lengths.size > start_threads * start_items) {
+        sums_before(lengths);
+        return fetch(lengths.end() - 1);
+    }
+    starts_kernel<<<1, start_threads>>>(lengths.data, lengths.size, landing<T>());
+    check(cudaGetLastError(), "kernel launch");
+    synchronize();
+    return *landing<T>();
+}
+
 template <class Key>
 void sort_by_key(Array<Key>& keys, Array<std::uint32_t>& values, Array<Key>& keys2, Array<std::uint32_t>& values2, int bits) {
     keys2.resize_discard(keys.size());
@@ -199,6 +229,16 @@ GR_HD void atomic_max(T* address, T value) {
     atomicMax(reinterpret_cast<Word*>(address), static_cast<Word>(value));
 #else
     if (value > *address) *address = value;
+#endif
+}
+
+/// The same for the threads of a warp that are active, which all give one address, in one go.
+GR_HD inline void atomic_max_of_warp(std::uint64_t* address, std::uint32_t value) {
+#if defined(__CUDA_ARCH__) && __CUDA_ARCH__ >= 800
+    const unsigned active = __activemask(), largest = __reduce_max_sync(active, value);
+    if (__ffs(active) - 1 == static_cast<int>(threadIdx.x % 32)) atomic_max(address, std::uint64_t{largest});
+#else
+    atomic_max(address, std::uint64_t{value});
 #endif
 }
 

@@ -83,9 +83,37 @@ inline void lay_out_slices(const NeighborList& found, ContactList& list) {
     for_each(n, [=] GR_HD(std::size_t i) {
         const auto count = static_cast<std::uint32_t>(offsets[i + 1] - offsets[i]);
         counts[i] = count;
-        atomic_max(&starts[i / slice_rows], std::uint64_t{count} * slice_rows);
+        atomic_max_of_warp(&starts[i / slice_rows], count * slice_rows);
     });
-    list.partners.resize_discard(exclusive_scan(starts));
+    list.partners.resize_discard(starts_of_rows(starts));
+}
+
+/// A row of at most 64 entries into its slice, those that touch first; returns how many do. Written in the slice's order, so that the
+/// lanes of a warp write side by side.
+template <class Touches>
+GR_HD std::uint32_t lay_out_row(const std::uint32_t* row, std::uint32_t count, const Touches& touches, std::uint32_t* first) {
+    std::uint64_t touching = 0;
+#pragma unroll 4
+    for (std::uint32_t k = 0; k < count; ++k) touching |= std::uint64_t{touches(row[k])} << k;
+    std::uint64_t apart = ~touching;
+    std::uint32_t live = 0;
+    for (std::uint32_t k = 0; k < count; ++k) {
+        const bool touches_too = touching;
+        std::uint64_t& left = touches_too ? touching : apart;
+        first[k * slice_rows] = row[lowest_bit(left)] | (touches_too ? live_bit : 0);
+        left &= left - 1;
+        live += touches_too;
+    }
+    return live;
+}
+/// The same of a longer row.
+template <class Touches>
+GR_HD std::uint32_t lay_out_long_row(const std::uint32_t* row, std::uint32_t count, const Touches& touches, std::uint32_t* first) {
+    std::uint32_t live = 0, back = count;
+    for (std::uint32_t k = 0; k < count; ++k)
+        if (touches(row[k])) first[live++ * slice_rows] = row[k] | live_bit;
+        else first[--back * slice_rows] = row[k];
+    return live;
 }
 
 /// Partners into their rows, those that touch first, and how many columns each slice needs.
@@ -98,20 +126,14 @@ void lay_out_partners(const NeighborList& found, const Carry& carry, ContactList
     const auto neighbors = found.neighbors.view();
     const Rows rows(list);
     for_each(found.rows(), [=] GR_HD(std::size_t i) {
-        const std::uint32_t count = rows.size(i);
+        const std::uint32_t count = rows.size(i), slice = static_cast<std::uint32_t>(i / slice_rows);
         const std::uint32_t* const row = neighbors.data + offsets[i];
-        std::uint32_t* const first = rows.partners.data + starts[i / slice_rows] + i % slice_rows;
-        std::uint32_t front = 0, back = count;
-        for (std::uint32_t start = 0; start < count; start += 32) {
-            const std::uint32_t end = count - start < 32 ? count - start : 32;
-            std::uint32_t touching = 0;
-            for (std::uint32_t k = 0; k < end; ++k) touching |= std::uint32_t{carry.touches(i, row[start + k])} << k;
-            for (std::uint32_t k = 0; k < end; ++k)
-                if (touching >> k & 1) first[front++ * slice_rows] = row[start + k] | live_bit;
-                else first[--back * slice_rows] = row[start + k];
-        }
-        const std::uint64_t width = (starts[i / slice_rows + 1] - starts[i / slice_rows]) / slice_rows, needed = front + more_columns;
-        atomic_max(&columns[i / slice_rows], width > settling_width || needed > width ? width : needed);
+        std::uint32_t* const first = rows.partners.data + starts[slice] + i % slice_rows;
+        const auto touches = [&](std::uint32_t j) { return carry.touches(i, j); };
+        const std::uint32_t live = count <= 64 ? lay_out_row(row, count, touches, first) : lay_out_long_row(row, count, touches, first);
+        const auto width = static_cast<std::uint32_t>((starts[slice + 1] - starts[slice]) / slice_rows);
+        const std::uint32_t needed = live + more_columns;
+        atomic_max_of_warp(&columns[slice], width > settling_width || needed > width ? width : needed);
     });
 }
 
@@ -124,7 +146,7 @@ void lay_out(NeighborList& found, const Carry& carry, ContactList& list) {
     lay_out_partners(found, carry, list);
     found.offsets.release();
     found.neighbors.release();
-    const std::uint64_t columns = exclusive_scan(list.columns.view());
+    const std::uint64_t columns = starts_of_rows(list.columns.view());
     list.history.resize_discard(columns * slice_rows);  // not before: what was found has gone
     list.spares.resize_discard(list.partners.size() / slice_rows);
     list.spares.clear_bytes();
@@ -132,8 +154,20 @@ void lay_out(NeighborList& found, const Carry& carry, ContactList& list) {
     const Rows rows(list);
     for_each(n, [=] GR_HD(std::size_t i) {
         float* const column = rows.own_column(i);
-        for (std::uint32_t k = 0; k < rows.size(i) && rows.live(i, k); ++k)
-            Rows::store(column + std::size_t{k} * column_floats, carry.history(i, rows.partner(i, k)));
+        const std::uint32_t* const words = &rows.word(i, 0);
+        const std::uint32_t size = rows.size(i);
+        constexpr std::uint32_t together = 2;  // waited for together
+        for (std::uint32_t k = 0; k < size && words[k * slice_rows] & live_bit; k += together) {
+            Vec3f history[together];
+            bool live[together];
+            for (std::uint32_t t = 0; t < together; ++t) {
+                const std::uint32_t word = k + t < size ? words[(k + t) * slice_rows] : 0;
+                live[t] = word & live_bit;
+                if (live[t]) history[t] = carry.history(i, word & ~live_bit);
+            }
+            for (std::uint32_t t = 0; t < together; ++t)
+                if (live[t]) Rows::store(column + (k + t) * column_floats, history[t]);
+        }
     });
 }
 
@@ -173,17 +207,28 @@ inline void keep_live(ContactList& list, ContactList& kept) {
         counts[i] = live;
         offsets[i] = stays;
     });
-    kept.partners.resize_discard(exclusive_scan(offsets));
-    kept.history.resize_discard(kept.partners.size());
-    const auto partners = kept.partners.view();
-    const auto history = kept.history.view();
+    kept.kept.resize_discard(starts_of_rows(offsets));
+    const auto pairs = kept.kept.view();
     for_each(n, [=] GR_HD(std::size_t i) {
+        constexpr std::uint32_t together = 4;  // waited for together
+        const float* const own = rows.own_column(i);
+        const std::uint32_t own_columns = rows.own_columns(i);
         std::uint64_t slot = offsets[i];
         for (std::uint32_t start = 0; start < rows.size(i); start += 32)
-            for (std::uint32_t rest = LiveEntries(rows, i, start).kept; rest; rest &= rest - 1) {
-                const std::uint32_t k = start + lowest_bit(rest);
-                partners[slot] = rows.partner(i, k);
-                history[slot++] = Rows::stored(rows.column(i, k));
+            for (std::uint32_t rest = LiveEntries(rows, i, start).kept; rest;) {
+                KeptPair some[together];
+                std::uint32_t count = 0;
+#pragma unroll
+                for (std::uint32_t t = 0; t < together; ++t) {
+                    if (!rest) continue;
+                    const std::uint32_t k = start + lowest_bit(rest);
+                    rest &= rest - 1;
+                    some[t] = {rows.partner(i, k), Rows::stored(k < own_columns ? own + k * column_floats : rows.column(i, k))};
+                    count = t + 1;
+                }
+#pragma unroll
+                for (std::uint32_t t = 0; t < together; ++t)
+                    if (t < count) pairs[slot++] = some[t];
             }
     });
     list.partners.release();

@@ -62,11 +62,11 @@ void sort(State& s, const ContactList& old_list, const Array<std::uint32_t>& row
     wrap_periodic(s);
     Particles& p = s.particles;
     const std::size_t n = p.size();
+    s.disorder += s.age.widening;
+    if (s.disorder < tolerated && rows.size() == 0) return old_index.resize_discard(0);
+    s.disorder = 0;
     old_index.resize_discard(n);
     const auto order = old_index.view();
-    s.disorder += s.age.widening;
-    if (s.disorder < tolerated && rows.size() == 0) return for_each(n, [=] GR_HD(std::size_t i) { order[i] = static_cast<std::uint32_t>(i); });
-    s.disorder = 0;
 
     const auto near = p.near.view();
     const auto far = p.far.view();
