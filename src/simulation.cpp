@@ -114,12 +114,15 @@ void Simulation::Impl::make_lists() {
 /// On CUDA a list that would take more memory than is planned for is made again with smaller margins.
 void Simulation::Impl::find_pairs() {
     const bool limited = options.device == Device::cuda;
-    const auto most = static_cast<std::size_t>(planned_entries * static_cast<double>(state.size()));
+    const auto planned = static_cast<std::size_t>(planned_entries * static_cast<double>(state.size()));
     for (MarginRule rule = margin_rule;;) {
-        stage.margins(state, constants, rule, spheres);
+        const Extents extents = stage.margins(state, constants, rule, spheres);
+        const bool shorter_is_possible = limited && state.age.limit > IntervalTuner::shortest;
+        search.set_most_entries(shorter_is_possible ? planned : ~std::size_t{0});
         const float* s = spheres.data();
-        search.find(Points{s, s + 1, s + 2, 4, s + 3, 4, 0, state.particles.id.data(), state.size()}, found);
-        if (!limited || found.neighbors.size() <= most || state.age.limit <= IntervalTuner::shortest) break;
+        search.find(Points{s, s + 1, s + 2, 4, s + 3, 4, 0, state.particles.id.data(), state.size(), &extents}, found);
+        const bool too_long = found.rows() == 0 || found.neighbors.size() > planned;
+        if (!too_long || !shorter_is_possible) break;
         rule.interval = std::max<float>(IntervalTuner::shortest, 0.7f * static_cast<float>(state.age.limit));
         rule.least *= 0.7f;
         tuner.shorten(rule.interval, rule.least);

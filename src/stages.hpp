@@ -14,7 +14,8 @@ struct Stages {
     /// not the index before sorting, because particles came or went; else empty.
     void (*sort)(State&, const ContactList& old_list, const Array<std::uint32_t>& rows, Array<std::uint32_t>& old_index);
     /// Frames, margins, positions of this build, ListAge::limit; clears State::flags; `spheres` gets 4 floats a particle: x y z reach.
-    void (*margins)(State&, const StepConstants&, const MarginRule&, Array<float>& spheres);
+    /// Returns what is true of them.
+    Extents (*margins)(State&, const StepConstants&, const MarginRule&, Array<float>& spheres);
     /// The pairs found become the list, with the histories of the old one; sign -1 where the pair stood in the other row.
     void (*list_pairs)(State&, NeighborList& found, const ContactList& old_list, const Array<std::uint32_t>& old_index);
     /// Planes within reach of each particle until the list's limit, with the histories of the old list.

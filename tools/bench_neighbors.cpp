@@ -91,6 +91,7 @@ void bench_cloud(const CloudName& which, std::size_t points, const Options& opti
         search.backend = backend;
         search.kind = options.kind == "half" ? ListKind::half : ListKind::full;
         search.ascending = false;
+        search.local_order = options.order == "morton";
         contenders.push_back(contender(device, search, points_of(xyz, reach), points_of(moved, reach)));
     }
     const std::size_t ours = contenders.size();

@@ -14,6 +14,12 @@
 
 namespace grainray {
 
+/// What is true of points. A caller who knows it spares a search a look at all points and the wait for its result.
+struct Extents {
+    Vec3f lower, upper;                                ///< bounds of the coordinates
+    float min_reach = 0, mean_reach = 0, max_reach = 0;
+};
+
 /// Points where the caller already has them: host memory for Device::cpu, device memory for Device::cuda.
 /// Coordinate a of point i is at a[i * stride], so structure-of-arrays (stride 1), float3 (3) and float4 (4) all fit.
 struct Points {
@@ -24,6 +30,9 @@ struct Points {
     float uniform_reach = 0;
     const std::uint32_t* ids = nullptr;  ///< distinct; break ties of the owner rule; null: the index
     std::size_t size = 0;
+    /// Of these points, where known; then nobody checks that coordinates and reaches are finite. Bounds that are too narrow or reaches
+    /// that are not so make lists wrong.
+    const Extents* extents = nullptr;
 
     /// Packed x y z x y z ... of n points.
     static Points xyz(const float* data, std::size_t n, float reach) { return {data, data + 1, data + 2, 3, nullptr, 1, reach, nullptr, n}; }
@@ -83,6 +92,9 @@ public:
     const std::string& reason() const;
     const SearchOptions& options() const;
     void set_block(std::uint32_t block);
+    /// Lists of points that would have more entries than this stay without rows, list.rows() is 0, where that is known before memory for
+    /// them is taken (everywhere but with OptiX). To begin with there is no limit.
+    void set_most_entries(std::size_t most);
     std::size_t memory_bytes() const;
     /// Gives back what every find() makes anew; the next one costs as much more as allocating does.
     void release();

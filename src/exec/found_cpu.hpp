@@ -86,7 +86,7 @@ private:
 };
 
 template <class Finder, class Tells>
-void collect(const Finder& finder, std::size_t items, const Tells& tells, NeighborList& list) {
+void collect(const Finder& finder, std::size_t items, const Tells& tells, std::size_t most_entries, NeighborList& list) {
     Array<std::uint32_t> own_counts(device, items);  // found by the row's own point; mirrored entries stand after them
     list.offsets.resize_discard(items + 1);
     list.offsets.clear_bytes();
@@ -100,7 +100,9 @@ void collect(const Finder& finder, std::size_t items, const Tells& tells, Neighb
         next[i] = count;
         if (count) atomic_add(&offsets[i], std::uint64_t{count});
     });
-    list.neighbors.resize_discard_slack(exclusive_scan(offsets));
+    const std::uint64_t all = exclusive_scan(offsets);
+    if (all > most_entries) return leave_without_rows(list);
+    list.neighbors.resize_discard_slack(all);
     const auto entries = list.neighbors.view();
     found.again([=](std::uint32_t i, const std::uint32_t* row, std::uint32_t count) {
         for (std::uint32_t e = 0; e < count; ++e) {

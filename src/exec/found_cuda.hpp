@@ -2,8 +2,7 @@
 // enough; what finds no place there is left over and joins its row when the list is filled.
 #pragma once
 
-#include "exec/cuda.hpp"
-#include "grainray/neighbors.hpp"
+#include "exec/found_once_cuda.hpp"
 
 namespace grainray::cuda {
 
@@ -63,31 +62,38 @@ GR_HD bool is_wide([[maybe_unused]] const Finder& finder, [[maybe_unused]] std::
     else return false;
 }
 
-/// What the items find, in their own rows. Those who find more than a row has places for search again for the rest.
+/// What the items find, in their own rows, and what a row has no places for left over; those who find more than can be put aside
+/// search again for the rest. Put aside are places of partners: to look up each partner when it is found would be waited for in the
+/// search's loop.
+template <class Finder, class Tells>
+__global__ void __launch_bounds__(find_threads) find_own_kernel(Finder finder, std::size_t items, Tells tells, Table table) {
+    constexpr std::uint32_t most = 40;
+    __shared__ Aside<most>::Room columns;
+    const std::size_t k = blockIdx.x * std::size_t{find_threads} + threadIdx.x;
+    if (k >= items) return;
+    Aside<most> aside(columns);
+    if (!is_wide(finder, k)) finder.find(k, [&](std::uint32_t place, bool hit) { aside(place, hit); });
+    const std::uint32_t i = finder.index(k), found = aside.found(), own = min(found, Table::places);
+#pragma unroll 4
+    for (std::uint32_t p = 0; p < own; ++p) table.at(i, p) = finder.partner(columns[p][threadIdx.x]);
+    table.own[i] = static_cast<std::uint8_t>(own);
+    table.counts[i] = own;
+    if (found == own) return;
+    LeftOvers rest{table};
+    for (std::uint32_t p = own; p < min(found, most); ++p) rest.add_found(finder, i, columns[p][threadIdx.x], tells);
+    std::uint32_t seen = 0;
+    if (found > most)
+        finder.find(k, [&](std::uint32_t place, bool hit) {
+            if (hit && seen++ >= most) rest.add_found(finder, i, place, tells);
+        });
+    rest.close();
+}
+
 template <class Finder, class Tells>
 void find_own(const Finder& finder, std::size_t items, const Tells& tells, const Table& table) {
-    for_each(items, [=] GR_HD(std::size_t k) {
-        const std::uint32_t i = finder.index(k);
-        std::uint32_t* const row = &table.at(i, 0);
-        const std::size_t stride = table.counts.size;
-        std::uint32_t found = 0, *next = row;
-        if (!is_wide(finder, k))
-            finder.find(k, [&](std::uint32_t place, bool hit) {
-                if (hit && found < Table::places) *next = finder.partner(place);
-                found += hit;
-                next += hit ? stride : 0;
-            });
-        const std::uint32_t own = found < Table::places ? found : Table::places;
-        table.own[i] = static_cast<std::uint8_t>(own);
-        table.counts[i] = own;
-        if (found <= Table::places) return;
-        LeftOvers rest{table};
-        std::uint32_t seen = 0;
-        finder.find(k, [&](std::uint32_t place, bool hit) {
-            if (hit && seen++ >= Table::places) rest.add_found(finder, i, place, tells);
-        });
-        rest.close();
-    });
+    if (items == 0) return;
+    find_own_kernel<<<static_cast<unsigned>((items + find_threads - 1) / find_threads), find_threads>>>(finder, items, tells, table);
+    check(cudaGetLastError(), "kernel launch");
 }
 
 /// Wide items are looked at by many threads, which leave all over.
@@ -141,6 +147,7 @@ void for_each_left_over(const Table& table, const Visit& visit) {
 /// How much the table and what it left over come to.
 struct ListSizes {
     std::uint64_t entries, left_over;
+    bool exceed(std::size_t most_entries) const { return std::max(entries, left_over) > most_entries; }
     GR_HD bool fit(const Table& table, const View<std::uint32_t>& list) const { return entries <= list.size && left_over <= table.left_over.size; }
 };
 
@@ -176,8 +183,8 @@ inline void fill_rows(const Table& table, View<const std::uint64_t> offsets, Vie
 }
 
 /// The table and what it left over become rows, at once where there is room for as many entries as expected. Returns their sizes;
-/// where more was left over than there is room for, nothing is done.
-inline ListSizes make_rows(const Table& table, std::size_t expected, NeighborList& list) {
+/// where more was left over than there is room for or there are too many, nothing is done.
+inline ListSizes make_rows(const Table& table, std::size_t expected, std::size_t most_entries, NeighborList& list) {
     const std::size_t n = table.counts.size;
     list.offsets.resize_discard(n + 1);
     const auto offsets = list.offsets.view();
@@ -190,7 +197,7 @@ inline ListSizes make_rows(const Table& table, std::size_t expected, NeighborLis
     list.neighbors.resize_discard(expected);
     fill_rows(table, offsets, list.neighbors.view());
     counted.wait();
-    if (sizes->left_over > table.left_over.size) return *sizes;
+    if (sizes->left_over > table.left_over.size || sizes->exceed(most_entries)) return *sizes;
     const bool filled = sizes->entries <= expected;
     list.neighbors.resize_discard_slack(sizes->entries);
     if (!filled) fill_rows(table, offsets, list.neighbors.view());
@@ -198,8 +205,11 @@ inline ListSizes make_rows(const Table& table, std::size_t expected, NeighborLis
 }
 
 template <class Finder, class Tells>
-void collect(const Finder& finder, std::size_t items, const Tells& tells, NeighborList& list) {
+void collect(const Finder& finder, std::size_t items, const Tells& tells, std::size_t most_entries, NeighborList& list) {
     static_assert(std::is_trivially_copyable_v<Finder>);
+    bool some_wide = false;
+    if constexpr (knows_wide<Finder>) some_wide = finder.some_wide;
+    if (finder.in_order() && !tells.some && !some_wide) return collect_at_once(finder, items, most_entries, list);
     static double usual = 0, usual_entries = 0;  // left over of an item, lately, and found for it
     Array<std::uint32_t> entries(device, items * Table::places), counts(device, items);
     Array<std::uint8_t> own(device, items);
@@ -210,10 +220,11 @@ void collect(const Finder& finder, std::size_t items, const Tells& tells, Neighb
         const Table table{entries.view(), own.view(), counts.view(), left_over.view(), left_over_count.data()};
         find_own(finder, items, tells, table);
         if constexpr (knows_wide<Finder>)
-            if (finder.some_wide) find_wide(finder, items, tells, table);
+            if (some_wide) find_wide(finder, items, tells, table);
         if (tells.some) tell_others(tells, table);
-        const double expected = std::min<double>(1.1 * usual_entries, Table::places);
-        const ListSizes sizes = make_rows(table, static_cast<std::size_t>(expected * static_cast<double>(items)), list);
+        const auto expected = static_cast<std::size_t>(std::min<double>(1.1 * usual_entries, Table::places) * static_cast<double>(items));
+        const ListSizes sizes = make_rows(table, std::min(expected, most_entries), most_entries, list);
+        if (sizes.exceed(most_entries)) return leave_without_rows(list);
         if (items) {
             usual = std::max(0.9 * usual, static_cast<double>(sizes.left_over) / static_cast<double>(items));
             usual_entries = static_cast<double>(sizes.entries) / static_cast<double>(items);

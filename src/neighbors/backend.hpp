@@ -26,6 +26,7 @@ struct Request {
     std::uint32_t block;
     bool ascending, local_order;
     Vec3f lower, period;
+    std::size_t most_entries = ~std::size_t{0};  ///< longer lists stay without rows, where that is known before they are filled
     bool periodic() const { return period.x > 0 || period.y > 0 || period.z > 0; }
 };
 

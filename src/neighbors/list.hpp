@@ -2,6 +2,7 @@
 //
 // A Finder is copied to the device and gives
 //   index(k)        the point that work item k stands for (a locality-friendly order of the points)
+//   in_order()      whether index(k) is k for each k (CUDA asks)
 //   find(k, emit)   calls emit(place, hit) for candidates, hit where the pair belongs to index(k)
 //   partner(place)  the point of a candidate
 // and, where items may have far more candidates than others, so that CUDA lets a block of threads look at each of those,
@@ -68,9 +69,9 @@ struct Mirror {
 /// Fills `list` with a row for each of `items` work items; what find(k, emit) emits stands in the row of index(k) and, where
 /// tells(index(k), j), in that of j.
 template <class Finder, class Tells>
-void build_list(const Finder& finder, std::size_t items, const Tells& tells, bool ascending, NeighborList& list) {
-    collect(finder, items, tells, list);
-    if (!ascending) return;
+void build_list(const Finder& finder, std::size_t items, const Tells& tells, const neighbors::Request& request, NeighborList& list) {
+    collect(finder, items, tells, request.most_entries, list);
+    if (!request.ascending || list.rows() == 0) return;
     const auto offsets = list.offsets.view();
     const auto entries = list.neighbors.view();
     for_each(items, [=] GR_HD(std::size_t i) { rows::sort(entries.data + offsets[i], offsets[i + 1] - offsets[i]); });

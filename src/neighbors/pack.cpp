@@ -70,17 +70,27 @@ void pack_points(const Points& points, const neighbors::Request& request, const 
 
     const Points p = points;
     const Vec3f lower = request.lower, period = request.period;
-    constexpr float huge = 3.4e38f;
-    const Extent none{{huge, huge, huge}, {-huge, -huge, -huge}, huge, 0, 0, 0xffffffffu};
-    const Extent all = reduce(n, none, [=] GR_HD(std::size_t i) {
+    const auto place = [=] GR_HD(std::size_t i) {
         const neighbors::Sphere s = in_place ? in_place[i] : neighbors::Sphere{p.x[i * p.stride], p.y[i * p.stride], p.z[i * p.stride],
                                                                               p.reach ? p.reach[i * p.reach_stride] : p.uniform_reach};
-        const bool good = finite(s.x) && finite(s.y) && finite(s.z) && finite(s.reach) && s.reach >= 0;
         const neighbors::Sphere w{wrap(s.x, lower.x, period.x), wrap(s.y, lower.y, period.y), wrap(s.z, lower.z, period.z), s.reach};
         if (spheres.size) spheres[i] = w;
         if (ids.size) ids[i] = static_cast<std::uint32_t>(i);
+        const bool good = finite(s.x) && finite(s.y) && finite(s.z) && finite(s.reach) && s.reach >= 0;
         return Extent{{w.x, w.y, w.z}, {w.x, w.y, w.z}, s.reach, s.reach, s.reach, good ? 0xffffffffu : static_cast<std::uint32_t>(i)};
-    }, Join{});
+    };
+    if (const Extents* const known = points.extents) {
+        if (spheres.size || ids.size) for_each(n, [=] GR_HD(std::size_t i) { place(i); });
+        packed.lower = known->lower;
+        packed.upper = known->upper;
+        packed.min_reach = known->min_reach;
+        packed.mean_reach = known->mean_reach;
+        packed.max_reach = known->max_reach;
+        return;
+    }
+    constexpr float huge = 3.4e38f;
+    const Extent none{{huge, huge, huge}, {-huge, -huge, -huge}, huge, 0, 0, 0xffffffffu};
+    const Extent all = reduce(n, none, place, Join{});
     if (all.first_bad != 0xffffffffu) refuse(points, all.first_bad, what);
     packed.lower = {all.lo[0], all.lo[1], all.lo[2]};
     packed.upper = {all.hi[0], all.hi[1], all.hi[2]};

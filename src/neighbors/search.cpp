@@ -70,7 +70,9 @@ struct NeighborSearch::Impl {
     std::map<std::string, std::unique_ptr<neighbors::Backend>> made;
     neighbors::Packed points, queries;
     std::map<bool, neighbors::Choice> choices;  ///< of pairs (false) and of queries (true)
-    std::size_t entries = 0;                    ///< of the last list
+    std::size_t entries = 0;                    ///< of the last list that was filled
+    std::size_t most_entries = ~std::size_t{0};
+    bool measuring = false;
     std::string backend, reason;
 
     Impl(Device d, SearchOptions o) : device(d), options(std::move(o)), points(d), queries(d) {
@@ -83,7 +85,9 @@ struct NeighborSearch::Impl {
         if (options.backend != "auto") neighbors::require_backend(options.backend, device);
     }
 
-    neighbors::Request request() const { return {options.kind, options.block, options.ascending, options.local_order, options.lower, options.period}; }
+    neighbors::Request request() const {
+        return {options.kind, options.block, options.ascending, options.local_order, options.lower, options.period, measuring ? ~std::size_t{0} : most_entries};
+    }
 
     neighbors::Backend& named(const std::string& name) {
         auto& instance = made[name];
@@ -124,6 +128,7 @@ struct NeighborSearch::Impl {
     /// Measures those that can win; the list is right in any case.
     void measure(neighbors::Choice& choice, const neighbors::Facts& now, bool of_queries, const Run& run, const NeighborList& list) {
         const auto start = std::chrono::steady_clock::now();
+        measuring = true;  // whole lists
         const std::vector<std::size_t> racing = field(choice, now, of_queries);
         bool last_failed = false;
         for (const std::size_t c : racing) {
@@ -145,12 +150,14 @@ struct NeighborSearch::Impl {
         const std::string& best = choice.candidates()[choice.best()].name;
         std::erase_if(made, [&](const auto& entry) { return entry.first != best; });  // their memory is better used elsewhere
         if (last_failed) run(named(best));
+        measuring = false;
         backend = best;
         reason = choice.reason();
     }
 
     void find(bool of_queries, const Run& run, NeighborList& list) {
         const std::size_t n = points.size();
+        measuring = false;
         if (options.backend != "auto") return run_with(options.backend, "asked for", run);
         if (n < brute_is_faster_below) return run_with("brute", "fewer than " + std::to_string(brute_is_faster_below) + " points", run);
         if (n < worth_measuring_from) return run_with("cells", "fewer than " + std::to_string(worth_measuring_from) + " points, too few to measure", run);
@@ -165,7 +172,7 @@ struct NeighborSearch::Impl {
             run_with(best, choice.reason(), run);
             choice.searched(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
         }
-        entries = list.neighbors.size();
+        if (list.rows()) entries = list.neighbors.size();
     }
 };
 
@@ -178,13 +185,14 @@ void NeighborSearch::find(const Points& points, NeighborList& list) {
     const neighbors::Request request = impl_->request();
     order_streams(impl_->options.stream, nullptr);
     pack(impl_->device, points, request, "point", impl_->points);
-    impl_->find(false, [&](neighbors::Backend& b) { b.pairs(impl_->points, request, list); }, list);
+    impl_->find(false, [&](neighbors::Backend& b) { b.pairs(impl_->points, impl_->request(), list); }, list);
     order_streams(nullptr, impl_->options.stream);
 }
 
 void NeighborSearch::find(const Points& queries, const Points& points, NeighborList& list) {
     neighbors::Request request = impl_->request();
     request.kind = ListKind::half;  // rows belong to the queries alone
+    request.most_entries = ~std::size_t{0};
     order_streams(impl_->options.stream, nullptr);
     pack(impl_->device, points, request, "point", impl_->points);
     pack(impl_->device, queries, request, "query", impl_->queries);
@@ -196,6 +204,7 @@ const std::string& NeighborSearch::backend() const { return impl_->backend; }
 const std::string& NeighborSearch::reason() const { return impl_->reason; }
 const SearchOptions& NeighborSearch::options() const { return impl_->options; }
 void NeighborSearch::set_block(std::uint32_t block) { impl_->options.block = block; }
+void NeighborSearch::set_most_entries(std::size_t most) { impl_->most_entries = most; }
 
 void NeighborSearch::release() {
     for (neighbors::Packed* packed : {&impl_->points, &impl_->queries}) {

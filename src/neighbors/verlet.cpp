@@ -111,12 +111,15 @@ GR_HD inline float largest_coordinate(const Bounds& b) {
     return most;
 }
 
-/// Sums over all particles, units.
+/// Sums over all particles, units, and the reaches there are, m.
 struct Widths {
     std::int64_t margins, widenings, radii;  ///< widening: what a reach has beyond the radius
+    float least_reach, largest_reach;
 };
 struct AddWidths {
-    GR_HD Widths operator()(const Widths& a, const Widths& b) const { return {a.margins + b.margins, a.widenings + b.widenings, a.radii + b.radii}; }
+    GR_HD Widths operator()(const Widths& a, const Widths& b) const {
+        return {a.margins + b.margins, a.widenings + b.widenings, a.radii + b.radii, fminf(a.least_reach, b.least_reach), fmaxf(a.largest_reach, b.largest_reach)};
+    }
 };
 
 /// What is true of all, one result after the other; the host reads it when the margins are there.
@@ -125,7 +128,7 @@ struct Whole {
     Sums sums;
     Extremes extremes;
     float longest;  ///< coordinate or period, m
-    float steps;    ///< that the list may last
+    double steps;   ///< that the list may last
     Widths widths;
 };
 
@@ -198,7 +201,7 @@ GR_HD inline float longest_life(const Extremes& e, float wanted, float radius, f
 
 }  // namespace
 
-void margins(State& s, const StepConstants& constants, const MarginRule& rule, Array<float>& points) {
+Extents margins(State& s, const StepConstants& constants, const MarginRule& rule, Array<float>& points) {
     const std::size_t n = s.size();
     const double unit = s.particles.scale.unit;
     points.resize_discard(4 * n);
@@ -234,10 +237,10 @@ void margins(State& s, const StepConstants& constants, const MarginRule& rule, A
     const auto frame = s.frame.view();
     const auto body = s.particles.body.view();
     const auto units = static_cast<float>(1 / unit);
-    reduce_into(&whole->widths, n, Widths{}, [=] GR_HD(std::size_t i) {
+    reduce_into(&whole->widths, n, Widths{0, 0, 0, 3.4e38f, 0}, [=] GR_HD(std::size_t i) {
         const Near q = near[i];
         const Surroundings& a = boxes.around[boxes.of(spheres[i])];
-        const float steps = whole->steps, own = length(body[i].velocity * to_units - a.frame) + rule.spread * a.spread;
+        const float steps = static_cast<float>(whole->steps), own = length(body[i].velocity * to_units - a.frame) + rule.spread * a.spread;
         const float margin = fminf(own * steps + rule.least * static_cast<float>(q.radius), widest / rule.trigger * rule.most_units);
         const float drifts = steps * (margin > ordinary * rule.most_units ? fmaxf(0.5f * a.shear, a.beyond) : 0.5f * a.shear);
         const auto kept = static_cast<std::int32_t>(margin);
@@ -248,7 +251,7 @@ void margins(State& s, const StepConstants& constants, const MarginRule& rule, A
         const float exact = static_cast<float>((static_cast<double>(q.radius) + kept + fminf(drifts, drift * rule.most_units)) * unit);
         const float reach = exact * 1.000002f + whole->longest * 4e-7f;
         spheres[i].reach = reach;
-        return Widths{kept, static_cast<std::int64_t>(reach * units) - q.radius, q.radius};
+        return Widths{kept, static_cast<std::int64_t>(reach * units) - q.radius, q.radius, reach, reach};
     }, AddWidths{});
 
     const Whole w = fetch(whole);
@@ -260,6 +263,8 @@ void margins(State& s, const StepConstants& constants, const MarginRule& rule, A
     s.age.margin = over_radii(w.widths.margins);
     s.age.widening = over_radii(w.widths.widenings);
     s.age.widest = widest / rule.trigger * rule.most_units;
+    const auto reaches = static_cast<double>(w.widths.radii + w.widths.widenings) * unit;
+    return {w.bounds.lower, w.bounds.upper, w.widths.least_reach, static_cast<float>(reaches / static_cast<double>(n)), w.widths.largest_reach};
 }
 
 }  // namespace grainray::GRAINRAY_EXEC

@@ -133,7 +133,9 @@ TEST(Auto, MeasuresRaysOnTheCpuWhereTheyCanWin) {
         search.find(points, found);
         cells.find(points, expected);
         EXPECT_EQ(found.neighbors.to_host(), expected.neighbors.to_host());
-        if (density == 1) EXPECT_EQ(search.backend(), "cells") << search.reason();  // else what was faster just now
+        if (density == 1) {  // else what was faster just now
+            EXPECT_EQ(search.backend(), "cells") << search.reason();
+        }
         EXPECT_EQ(search.reason().find("left out") != std::string::npos, density == 1) << search.reason();
     }
 }

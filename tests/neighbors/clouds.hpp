@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <random>
 #include <string>
 #include <utility>
@@ -161,6 +162,26 @@ struct Oracle {
         return out;
     }
 };
+
+/// Of the points where a periodic box has them.
+inline Extents extents_of(const Cloud& c) {
+    if (c.size() == 0) return {};
+    constexpr float far = std::numeric_limits<float>::max();
+    Extents e{{far, far, far}, {-far, -far, -far}, far, 0, 0};
+    double sum = 0;
+    for (std::size_t i = 0; i < c.size(); ++i) {
+        const Vec3f x{Oracle::wrapped(c.x[i], c.lower.x, c.period.x), Oracle::wrapped(c.y[i], c.lower.y, c.period.y), Oracle::wrapped(c.z[i], c.lower.z, c.period.z)};
+        for (int a = 0; a < 3; ++a) {
+            e.lower[a] = std::min(e.lower[a], x[a]);
+            e.upper[a] = std::max(e.upper[a], x[a]);
+        }
+        e.min_reach = std::min(e.min_reach, c.reach[i]);
+        e.max_reach = std::max(e.max_reach, c.reach[i]);
+        sum += c.reach[i];
+    }
+    e.mean_reach = static_cast<float>(sum / static_cast<double>(c.size()));
+    return e;
+}
 
 /// A cloud on a device.
 struct DeviceCloud {

@@ -60,6 +60,44 @@ TEST_P(Search, UnsortedRowsHoldTheSameSets) {
     EXPECT_EQ(rows, Oracle{cloud}.rows(GetParam().kind, 100));
 }
 
+TEST_P(Search, ListsThatWouldBeTooLongStayWithoutRows) {
+    const bool known_too_late = GetParam().device == Device::cuda && GetParam().backend.starts_with("rays");
+    Cloud equal = random_cloud("", 1500, 0, 1, 0.06f, 78), unequal = equal;
+    for (std::size_t i = 0; i < unequal.size(); ++i) unequal.reach[i] *= 0.5f + 0.1f * static_cast<float>(i % 11);
+    for (const Cloud* cloud : {&equal, &unequal}) {
+        const auto expected = Oracle{*cloud}.rows(GetParam().kind, 37);
+        std::size_t entries = 0;
+        for (const auto& row : expected) entries += row.size();
+        SearchOptions options{GetParam().backend, GetParam().kind, 37, true, {}, {}, true};
+        NeighborSearch search(GetParam().device, options);
+        NeighborList list(GetParam().device);
+        const DeviceCloud on_device(GetParam().device, *cloud);
+        for (const std::size_t most : {entries, entries - 1, std::size_t{3}, 100 * entries}) {
+            search.set_most_entries(most);
+            search.find(on_device.points(), list);
+            EXPECT_EQ(rows_of(list), most < entries && !known_too_late ? std::vector<std::vector<std::uint32_t>>{} : expected) << most;
+        }
+    }
+}
+
+// As a simulation asks: points in the order of space (said of any order, since only speed may depend on it), extents known.
+TEST_P(Search, WhatIsKnownOfThePointsChangesNothing) {
+    for (const Cloud& cloud : adversarial_clouds()) {
+        SCOPED_TRACE(cloud.name);
+        SearchOptions options{GetParam().backend, GetParam().kind, 37, true, cloud.lower, cloud.period, true};
+        NeighborSearch search(GetParam().device, options);
+        NeighborList list(GetParam().device);
+        const DeviceCloud on_device(GetParam().device, cloud);
+        const Extents extents = extents_of(cloud);
+        Points points = on_device.points();
+        for (const Extents* known : {static_cast<const Extents*>(nullptr), &extents}) {
+            points.extents = known;
+            search.find(points, list);
+            EXPECT_EQ(rows_of(list), Oracle{cloud}.rows(GetParam().kind, 37)) << (known ? "extents known" : "extents not known");
+        }
+    }
+}
+
 TEST_P(Search, SeparateQueriesEqualAllPairs) {
     for (const Cloud& cloud : adversarial_clouds()) {
         SCOPED_TRACE(cloud.name);

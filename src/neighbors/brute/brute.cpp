@@ -11,6 +11,7 @@ struct BrutePairs {
 
     GR_HD std::uint32_t partner(std::uint32_t place) const { return place; }
     GR_HD std::uint32_t index(std::size_t k) const { return static_cast<std::uint32_t>(k); }
+    static bool in_order() { return true; }
     template <class Emit>
     GR_HD void find(std::size_t k, const Emit& emit) const {
         const neighbors::Sphere a = points[k];
@@ -25,6 +26,7 @@ struct BruteQueries {
 
     GR_HD std::uint32_t partner(std::uint32_t place) const { return place; }
     GR_HD std::uint32_t index(std::size_t k) const { return static_cast<std::uint32_t>(k); }
+    static bool in_order() { return true; }
     template <class Emit>
     GR_HD void find(std::size_t k, const Emit& emit) const {
         for (std::size_t j = 0; j < points.size; ++j)
@@ -35,10 +37,10 @@ struct BruteQueries {
 class Brute final : public neighbors::Backend {
 public:
     void pairs(const neighbors::Packed& p, const neighbors::Request& r, NeighborList& list) override {
-        build_list(BrutePairs{p.spheres, p.ids, r.period}, p.size(), Mirror(r), r.ascending, list);
+        build_list(BrutePairs{p.spheres, p.ids, r.period}, p.size(), Mirror(r), r, list);
     }
     void queries(const neighbors::Packed& q, const neighbors::Packed& p, const neighbors::Request& r, NeighborList& list) override {
-        build_list(BruteQueries{q.spheres, p.spheres, r.period}, q.size(), Mirror(r), r.ascending, list);
+        build_list(BruteQueries{q.spheres, p.spheres, r.period}, q.size(), Mirror(r), r, list);
     }
     std::size_t memory_bytes() const override { return 0; }
 };

@@ -25,15 +25,16 @@ struct Sorted {
     GR_HD void for_each_run(const neighbors::Sphere& s, float half_width, const Visit& visit) const {
         grid.for_each_run<device == Device::cuda>(s, half_width, [&](std::uint32_t first, std::uint32_t last) { visit(starts[first], starts[last]); });
     }
-    /// Two points at a time, so that they are waited for together.
-    template <class Test, class Emit>
+    /// `together` points at a time, so that they are waited for together.
+    template <std::uint32_t together, class Test, class Emit>
     GR_HD void find(const neighbors::Sphere& s, float half_width, const Test& test, const Emit& emit) const {
-        for_each_run(s, half_width, [&](std::uint32_t p, std::uint32_t end) {
-            for (; p < end; p += 2) {
-                const std::uint32_t q = p + 1 < end ? p + 1 : p;
-                const neighbors::Sphere a = spheres[p], b = spheres[q];
-                emit(p, test(a, p));
-                emit(q, (q != p) & test(b, q));
+        for_each_run(s, half_width, [&](std::uint32_t first, std::uint32_t end) {
+            for (std::uint32_t p = first; p < end; p += together) {
+                std::uint32_t at[together];
+                neighbors::Sphere some[together];
+                for (std::uint32_t t = 0; t < together; ++t) at[t] = t == 0 || p + t < end ? p + t : end - 1;
+                for (std::uint32_t t = 0; t < together; ++t) some[t] = spheres[at[t]];
+                for (std::uint32_t t = 0; t < together; ++t) emit(at[t], (at[t] == p + t) & test(some[t], at[t]));
             }
         });
     }
@@ -104,10 +105,11 @@ struct CellPairs {
         return {*this, a, seen ? 0 : ids[k], indices.size ? static_cast<std::uint32_t>(k) : places[k], seen ? sight.limit(a.reach) : a.reach};
     }
     GR_HD std::uint32_t index(std::size_t k) const { return indices.size ? indices[k] : static_cast<std::uint32_t>(k); }
+    bool in_order() const { return indices.size == 0; }
     template <class Emit>
     GR_HD void find(std::size_t k, const Emit& emit) const {
         const Taken t = taken(k);
-        sorted.find(t.a, t.a.reach + t.limit, t, emit);
+        sorted.template find<seen ? 4 : 2>(t.a, t.a.reach + t.limit, t, emit);  // fewer where each is asked for its owner
     }
     static constexpr bool in_runs = !seen, wraps = periodic, owners = true;
     GR_HD View<const std::uint32_t> search_ids() const { return sorted_ids; }
@@ -142,10 +144,11 @@ struct CellQueries {
     }
     GR_HD std::uint32_t partner(std::uint32_t place) const { return sorted.order[place]; }
     GR_HD std::uint32_t index(std::size_t k) const { return static_cast<std::uint32_t>(k); }
+    static bool in_order() { return true; }
     template <class Emit>
     GR_HD void find(std::size_t k, const Emit& emit) const {
         const neighbors::Sphere q = queries[k];
-        sorted.find(q, q.reach + max_reach, [&](const neighbors::Sphere& b, std::uint32_t) { return near<periodic>(q, b, period); }, emit);
+        sorted.template find<4>(q, q.reach + max_reach, [&](const neighbors::Sphere& b, std::uint32_t) { return near<periodic>(q, b, period); }, emit);
     }
 };
 
@@ -159,8 +162,8 @@ public:
     void queries(const neighbors::Packed& q, const neighbors::Packed& points, const neighbors::Request& r, NeighborList& list) override {
         const Sorted sorted = sort(points, r, false);
         const auto queries = q.spheres;
-        if (r.periodic()) build_list(CellQueries<true>{sorted, queries, r.period, points.max_reach}, q.size(), Mirror(r), r.ascending, list);
-        else build_list(CellQueries<false>{sorted, queries, r.period, points.max_reach}, q.size(), Mirror(r), r.ascending, list);
+        if (r.periodic()) build_list(CellQueries<true>{sorted, queries, r.period, points.max_reach}, q.size(), Mirror(r), r, list);
+        else build_list(CellQueries<false>{sorted, queries, r.period, points.max_reach}, q.size(), Mirror(r), r, list);
     }
     std::size_t memory_bytes() const override {
         return ranks_.bytes() + order_.bytes() + ids_.bytes() + spheres_.bytes() + starts_.bytes();
@@ -183,9 +186,9 @@ private:
             if (full(r)) {
                 const float seen_by_all = sight.limit(points.min_reach);
                 return build_list(finder<periodic, true>(sorted, points, r, sight), points.size(),
-                                  Unseeing{points.spheres, sight, seen_by_all, points.max_reach > seen_by_all}, r.ascending, list);
+                                  Unseeing{points.spheres, sight, seen_by_all, points.max_reach > seen_by_all}, r, list);
             }
-        build_list(finder<periodic, false>(sorted, points, r, sight), points.size(), Mirror(r), r.ascending, list);
+        build_list(finder<periodic, false>(sorted, points, r, sight), points.size(), Mirror(r), r, list);
     }
     template <bool periodic, bool seen>
     CellPairs<periodic, seen> finder(const Sorted& sorted, const neighbors::Packed& points, const neighbors::Request& r, const Sight& sight) const {

@@ -79,14 +79,14 @@ public:
 
     void pairs(const neighbors::Packed& p, const neighbors::Request& r, NeighborList& list) override {
         const Boxes boxes = build(p, p, r);
-        if (r.periodic()) build_list(RayPairs<true>{boxes, p.ids}, p.size(), Mirror(r), r.ascending, list);
-        else build_list(RayPairs<false>{boxes, p.ids}, p.size(), Mirror(r), r.ascending, list);
+        if (r.periodic()) build_list(RayPairs<true>{boxes, p.ids}, p.size(), Mirror(r), r, list);
+        else build_list(RayPairs<false>{boxes, p.ids}, p.size(), Mirror(r), r, list);
         tree_.check();
     }
     void queries(const neighbors::Packed& q, const neighbors::Packed& p, const neighbors::Request& r, NeighborList& list) override {
         const Boxes boxes = build(q, p, r);
-        if (r.periodic()) build_list(RayQueries<true>{boxes, q.spheres}, q.size(), Mirror(r), r.ascending, list);
-        else build_list(RayQueries<false>{boxes, q.spheres}, q.size(), Mirror(r), r.ascending, list);
+        if (r.periodic()) build_list(RayQueries<true>{boxes, q.spheres}, q.size(), Mirror(r), r, list);
+        else build_list(RayQueries<false>{boxes, q.spheres}, q.size(), Mirror(r), r, list);
         tree_.check();
     }
     std::size_t memory_bytes() const override { return tree_.memory_bytes(); }
