@@ -155,12 +155,13 @@ struct CellQueries {
 class Cells final : public neighbors::Backend {
 public:
     void pairs(const neighbors::Packed& points, const neighbors::Request& r, NeighborList& list) override {
-        const Sorted sorted = sort(points, r, !(device == Device::cuda && full(r)));
+        const bool seen = device == Device::cuda && full(r);
+        const Sorted sorted = sort(points, r, !seen, seen ? 0.5f * (points.mean_reach + sight_of(points).common) : points.mean_reach);
         if (r.periodic()) build<true>(sorted, points, r, list);
         else build<false>(sorted, points, r, list);
     }
     void queries(const neighbors::Packed& q, const neighbors::Packed& points, const neighbors::Request& r, NeighborList& list) override {
-        const Sorted sorted = sort(points, r, false);
+        const Sorted sorted = sort(points, r, false, points.mean_reach);
         const auto queries = q.spheres;
         if (r.periodic()) build_list(CellQueries<true>{sorted, queries, r.period, points.max_reach}, q.size(), Mirror(r), r, list);
         else build_list(CellQueries<false>{sorted, queries, r.period, points.max_reach}, q.size(), Mirror(r), r, list);
@@ -174,14 +175,15 @@ public:
         spheres_.release();
     }
 
-    /// owners: pairs are taken by the owner rule, which asks for the ids.
-    Sorted sort(const neighbors::Packed& points, const neighbors::Request& r, bool owners);
+    /// owners: pairs are taken by the owner rule, which asks for the ids. usual: half of how far a point of mean reach looks.
+    Sorted sort(const neighbors::Packed& points, const neighbors::Request& r, bool owners, float usual);
 
 private:
+    static Sight sight_of(const neighbors::Packed& points) { return {neighbors::smaller(common_reach * points.mean_reach, points.max_reach)}; }
     static bool full(const neighbors::Request& r) { return r.kind == ListKind::full || (r.kind == ListKind::blocked && r.block == 1); }
     template <bool periodic>
     void build(const Sorted& sorted, const neighbors::Packed& points, const neighbors::Request& r, NeighborList& list) {
-        const Sight sight{neighbors::smaller(common_reach * points.mean_reach, points.max_reach)};
+        const Sight sight = sight_of(points);
         if constexpr (device == Device::cuda)
             if (full(r)) {
                 const float seen_by_all = sight.limit(points.min_reach);
@@ -203,9 +205,9 @@ private:
 };
 
 /// A counting sort: how many lie in each bucket, where each bucket starts, and each point to its place.
-Sorted Cells::sort(const neighbors::Packed& points, const neighbors::Request& r, bool owners) {
+Sorted Cells::sort(const neighbors::Packed& points, const neighbors::Request& r, bool owners, float usual) {
     const std::size_t n = points.size();
-    const neighbors::Grid grid = neighbors::make_grid(n, points.mean_reach, points.lower, points.upper, r.lower, r.period, neighbors::search_cut_x);
+    const neighbors::Grid grid = neighbors::make_grid(n, usual, points.lower, points.upper, r.lower, r.period, neighbors::search_cut_x);
     starts_.resize_discard_slack(grid.buckets() + 1);
     starts_.clear_bytes();
     ranks_.resize_discard(n);
