@@ -24,6 +24,7 @@ constexpr double particle = sizeof(Near) + sizeof(Far) + sizeof(Body) + sizeof(V
 constexpr double margin = sizeof(Near) + sizeof(Vec3f), row = sizeof(std::uint32_t) + 2 * sizeof(std::uint64_t) / 32.0;
 constexpr double word = sizeof(std::uint32_t) * (1 + 1 / 32.0);   ///< an entry of a slice: partner, and a number for 32 rows
 constexpr double column = sizeof(Vec3f) * (1 + 1 / 64.0);         ///< of a row, with its share of the spare ones
+constexpr double search = 16 + 32 + 117 + 12 + 8;                 ///< points; cells; table of what is found, left over; row starts
 constexpr double entry = sizeof(std::uint32_t) + sizeof(Vec3f);   ///< of a list that is not in slices
 
 /// Slots of rows that the small ones around a large particle fill, 32 rows wide. Twice as many are near as touch.
@@ -61,7 +62,7 @@ std::vector<MemoryPart> forecast_device_memory(const Scene& scene, double n, con
     // The moments: the new list is there and the histories of the old one still are; the search; a step.
     const std::vector<std::vector<MemoryPart>> moments{
         {lists[0], {"histories carried over", touching + index}},
-        {{"histories carried over", touching + index}, {"search", n * (96 + 121 + 12 + sizeof(std::uint32_t) * planned_entries * 1.1)}},
+        {{"histories carried over", touching + index}, {"search", n * (search + sizeof(std::uint32_t) * planned_entries)}},
         {lists[0], {"next state", n * (sizeof(Near) + sizeof(Body) + (periodic ? sizeof(Far) : 0))}}};
     const auto most = std::max_element(moments.begin(), moments.end(), [](const auto& a, const auto& b) { return sum(a) < sum(b); });
     std::vector<MemoryPart> parts = always;
