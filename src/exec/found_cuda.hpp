@@ -144,10 +144,10 @@ void for_each_left_over(const Table& table, const Visit& visit) {
     });
 }
 
-/// How much the table and what it left over come to.
+/// How much the table and what it left over come to: entries, without those for which there was no room, and the room that was
+/// taken, part of which holds nothing.
 struct ListSizes {
     std::uint64_t entries, left_over;
-    bool exceed(std::size_t most_entries) const { return std::max(entries, left_over) > most_entries; }
     GR_HD bool fit(const Table& table, const View<std::uint32_t>& list) const { return entries <= list.size && left_over <= table.left_over.size; }
 };
 
@@ -197,7 +197,7 @@ inline ListSizes make_rows(const Table& table, std::size_t expected, std::size_t
     list.neighbors.resize_discard(expected);
     fill_rows(table, offsets, list.neighbors.view());
     counted.wait();
-    if (sizes->left_over > table.left_over.size || sizes->exceed(most_entries)) return *sizes;
+    if (sizes->left_over > table.left_over.size || sizes->entries > most_entries) return *sizes;
     const bool filled = sizes->entries <= expected;
     list.neighbors.resize_discard_slack(sizes->entries);
     if (!filled) fill_rows(table, offsets, list.neighbors.view());
@@ -224,7 +224,7 @@ void collect(const Finder& finder, std::size_t items, const Tells& tells, std::s
         if (tells.some) tell_others(tells, table);
         const auto expected = static_cast<std::size_t>(std::min<double>(1.1 * usual_entries, Table::places) * static_cast<double>(items));
         const ListSizes sizes = make_rows(table, std::min(expected, most_entries), most_entries, list);
-        if (sizes.exceed(most_entries)) return leave_without_rows(list);
+        if (sizes.entries > most_entries) return leave_without_rows(list);
         if (items) {
             usual = std::max(0.9 * usual, static_cast<double>(sizes.left_over) / static_cast<double>(items));
             usual_entries = static_cast<double>(sizes.entries) / static_cast<double>(items);

@@ -62,9 +62,10 @@ TEST_P(Search, UnsortedRowsHoldTheSameSets) {
 
 TEST_P(Search, ListsThatWouldBeTooLongStayWithoutRows) {
     const bool known_too_late = GetParam().device == Device::cuda && GetParam().backend.starts_with("rays");
-    Cloud equal = random_cloud("", 1500, 0, 1, 0.06f, 78), unequal = equal;
+    Cloud equal = random_cloud("", 1500, 0, 1, 0.06f, 78), unequal = equal, boulders = random_cloud("", 1500, 0, 1, 0.02f, 79);
     for (std::size_t i = 0; i < unequal.size(); ++i) unequal.reach[i] *= 0.5f + 0.1f * static_cast<float>(i % 11);
-    for (const Cloud* cloud : {&equal, &unequal}) {
+    for (std::size_t i = 0; i < boulders.size(); i += 100) boulders.reach[i] = 0.2f;  // many threads of CUDA look around each
+    for (const Cloud* cloud : {&equal, &unequal, &boulders}) {
         const auto expected = Oracle{*cloud}.rows(GetParam().kind, 37);
         std::size_t entries = 0;
         for (const auto& row : expected) entries += row.size();
