@@ -27,12 +27,13 @@ struct Carry {
     OldIndex was;
 
     /// It stands in one row or in both; on CUDA in that of the first particle.
+    static constexpr bool kept_by_first = device == Device::cuda;
     GR_HD Vec3f history(std::size_t i, std::uint32_t j) const {
-        const bool first = was[i] < was[j];
-        const std::uint32_t a = first ? was[i] : was[j], b = first ? was[j] : was[i];
+        const bool turned = kept_by_first && was[j] < was[i];
+        const std::uint32_t a = turned ? was[j] : was[i], b = turned ? was[i] : was[j];
         Vec3f h{};
-        if (old.look_up(a, b, h)) return first ? h : -h;
-        if (old.look_up(b, a, h)) return first ? -h : h;
+        if (old.look_up(a, b, h)) return turned ? -h : h;
+        if (old.look_up(b, a, h)) return turned ? h : -h;
         return h;
     }
 };

@@ -22,18 +22,18 @@ struct OldRows {
     explicit OldRows(const ContactList& list) : offsets(list.offsets.view()), partners(list.partners.view()), history(list.history.view()), kept(list.kept.view()) {}
 
     GR_HD bool look_up(std::uint32_t row, std::uint32_t partner, Vec3f& found) const {
-        const std::uint64_t end = offsets[row + 1];
-        for (std::uint64_t e = offsets[row]; e < end; ++e) {
-            if (kept.size) {
-                const KeptPair pair = kept[e];
-                if (pair.partner == partner) {
-                    found = pair.history;
-                    return true;
-                }
-            } else if (partners[e] == partner) {
-                found = history[e];
-                return true;
-            }
+        return kept.size ? look_up(row, [&](std::uint64_t e) { return kept[e]; }, partner, found)
+                         : look_up(row, [&](std::uint64_t e) { return KeptPair{partners[e], history[e]}; }, partner, found);
+    }
+
+private:
+    template <class Entry>
+    GR_HD bool look_up(std::uint32_t row, const Entry& entry, std::uint32_t partner, Vec3f& found) const {
+        for (std::uint64_t e = offsets[row]; e < offsets[row + 1]; ++e) {
+            const KeptPair pair = entry(e);
+            if (pair.partner != partner) continue;
+            found = pair.history;
+            return true;
         }
         return false;
     }
